@@ -1,0 +1,57 @@
+"""Chains of physical rods on a moving support: Lagrangian, equations of motion, small motions, normal modes.
+
+    rods -> Scene -> euler_lagrange -> linearize -> first_order -> P, tau, period
+                                                 -> normal_modes -> one Mathieu equation a mode
+
+>>> from sympy import cos, symbols
+>>> m, l, epsilon, omega0, t = symbols("m l epsilon omega0 t")
+>>> scene = Scene([Rod.uniform(m, l)] * 2, Support(eta=epsilon*cos(omega0*t)))
+>>> P, tau, period = linearize(euler_lagrange(scene)).first_order(omega0)
+>>> P[2, 0], period
+(-18*h*cos(tau)/7 + 18/(7*v**2), 2*pi)
+"""
+
+from .energy import Scene
+from .equations import EquationsOfMotion, euler_lagrange
+from .errors import (
+    DriveError,
+    InhomogeneousError,
+    LagrangianError,
+    NameClashError,
+    NotAnEquilibriumError,
+    NotAQuantityError,
+    NotASceneError,
+    NotDecoupledError,
+    NotPeriodicError,
+    QuantityError,
+    SceneError,
+    TextError,
+)
+from .linearize import FirstOrderSystem, LinearEquations, linearize
+from .normal_modes import NormalModes, normal_modes
+from .scene import Rod, Support
+
+__all__ = [
+    "DriveError",
+    "EquationsOfMotion",
+    "FirstOrderSystem",
+    "InhomogeneousError",
+    "LagrangianError",
+    "LinearEquations",
+    "NameClashError",
+    "NormalModes",
+    "NotAQuantityError",
+    "NotASceneError",
+    "NotAnEquilibriumError",
+    "NotDecoupledError",
+    "NotPeriodicError",
+    "QuantityError",
+    "Rod",
+    "Scene",
+    "SceneError",
+    "Support",
+    "TextError",
+    "euler_lagrange",
+    "linearize",
+    "normal_modes",
+]

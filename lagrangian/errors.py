@@ -1,0 +1,71 @@
+"""The ways a mechanical question can have no answer.
+
+One base, :class:`LagrangianError`, and one name for each kind of claim that fails.  Every message says the
+claim, the value that contradicts it, and what would do instead.  Each class is also a ``ValueError`` (the
+kind of object is right, its value is not) or a ``TypeError`` (the kind of object is wrong).
+"""
+
+from __future__ import annotations
+
+__all__ = [
+    "DriveError",
+    "InhomogeneousError",
+    "LagrangianError",
+    "NameClashError",
+    "NotAQuantityError",
+    "NotASceneError",
+    "NotAnEquilibriumError",
+    "NotDecoupledError",
+    "NotPeriodicError",
+    "QuantityError",
+    "SceneError",
+    "TextError",
+]
+
+
+class LagrangianError(Exception):
+    """The base of every exception that the package raises on purpose."""
+
+
+class TextError(LagrangianError, TypeError):
+    """Text stood where mathematics was expected; text is never evaluated."""
+
+
+class NotAQuantityError(LagrangianError, TypeError):
+    """The object given is neither a number nor a scalar SymPy expression."""
+
+
+class NotASceneError(LagrangianError, TypeError):
+    """The object given is not the stage of the derivation that the function starts from."""
+
+
+class QuantityError(LagrangianError, ValueError):
+    """A mass, length, angle or other quantity has a value that no chain can have."""
+
+
+class SceneError(LagrangianError, ValueError):
+    """The parts do not make a chain: no rods, or not one joint constant for every rod."""
+
+
+class DriveError(LagrangianError, ValueError):
+    """The motion of the support is not a prescribed, twice differentiable function of time."""
+
+
+class NameClashError(LagrangianError, ValueError):
+    """A Symbol of the scene has the name of one that the result needs for something else."""
+
+
+class NotAnEquilibriumError(LagrangianError, ValueError):
+    """The chain does not stay at the angles about which it was to be linearised."""
+
+
+class InhomogeneousError(LagrangianError, ValueError):
+    """The linear equations have a remainder, and the form asked for has no place for it."""
+
+
+class NotPeriodicError(LagrangianError, ValueError):
+    """The coefficients are not a finite trigonometric polynomial of the phase ``tau = omega0 t``."""
+
+
+class NotDecoupledError(LagrangianError, ValueError):
+    """No constant change of coordinates turns the linear equations into one equation a mode."""

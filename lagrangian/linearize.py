@@ -1,0 +1,483 @@
+r"""Small motions about rest, and the same in the phase ``tau = omega0 t``: ``x' = P(tau) x``.
+
+About angles ``about`` at which the chain can stay, with ``theta`` now the deviation from them,
+
+    A theta'' + damping theta' + stiffness(t) theta + remainder(t) = 0        ([Neves] Out[36])
+    A = M(about),   stiffness = -df/dtheta,   damping = -df/dtheta',   remainder = -f,   all at rest there.
+
+The article divides by ``m l**2`` (In[36]); here that is :meth:`LinearEquations.divided`, and the undivided
+matrices keep their units.  Its "equilibrium" allows a remainder from horizontal driving (Out[40]), and so does
+this file: ``about`` must balance weight, springs and vertical driving at every time.
+
+In ``tau = omega0 t`` with ``x = (theta, dtheta/dtau)`` ([Neves] (11), (18))
+
+    P(tau) = [[0, 1], [-A**-1 stiffness(tau/omega0) / omega0**2,  -A**-1 damping / omega0]],
+
+every entry a finite sum of ``c cos(q tau)`` and ``s sin(q tau)`` with rational q, which repeats after
+``2 pi / gcd(q)``.  For equal rods ``h = epsilon/l`` and ``v = omega0 sqrt(l/g)`` ([Neves] (16), (17)) leave no
+other parameter: ``g/(l omega0**2) = 1/v**2``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import reduce
+from typing import Any
+
+from sympy import (
+    Add,
+    Derivative,
+    Dummy,
+    Expr,
+    ImmutableDenseMatrix,
+    Integer,
+    Mul,
+    Pow,
+    Rational,
+    Symbol,
+    cos,
+    expand,
+    eye,
+    gcd,
+    latex,
+    pi,
+    sin,
+    sqrt,
+    zeros,
+)
+from sympy.core.function import AppliedUndef
+
+from .energy import Scene
+from .equations import EquationsOfMotion, thrust
+from .errors import (
+    InhomogeneousError,
+    NameClashError,
+    NotAnEquilibriumError,
+    NotAQuantityError,
+    NotASceneError,
+    NotPeriodicError,
+    QuantityError,
+    SceneError,
+)
+from .scene import column, quantity, refuse_text
+
+__all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
+
+
+@dataclass(frozen=True, repr=False)
+class FirstOrderSystem:
+    """``dx/dtau = P(tau) x`` with ``x = (theta, dtheta/dtau)``; unpacks as ``P, tau, period``.  Immutable, exact.
+
+    Attributes
+    ----------
+    P : Matrix, shape (2N, 2N), a trigonometric polynomial in tau; dimensionless
+    tau : Symbol, the phase omega0 t; rad
+    period : the smallest period of P, a rational multiple of pi (2 pi where P is constant)
+    where : pairs (symbol, what it stands for): (h, epsilon/l) and (v, omega0*sqrt(l/g)) when they are used
+    """
+
+    P: Any
+    tau: Any
+    period: Any
+    where: tuple[tuple[Any, Any], ...] = ()
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.P, self.tau, self.period))
+
+    def __repr__(self) -> str:
+        where = "".join(f", {symbol} = {meaning}" for symbol, meaning in self.where)
+        return f"FirstOrderSystem(P of shape {self.P.shape}, tau={self.tau}, period={self.period}{where})"
+
+    def _repr_latex_(self) -> str:
+        return rf"$\frac{{dx}}{{d{latex(self.tau)}}} = {latex(self.P)} x, \quad T = {latex(self.period)}$"
+
+
+@dataclass(frozen=True, repr=False)
+class LinearEquations:
+    """``A theta'' + damping theta' + stiffness theta + remainder = 0``, theta the deviation from ``about``.
+
+    Attributes
+    ----------
+    scene : the :class:`Scene` they belong to
+    about : tuple of N angles; rad
+    A : Matrix, shape (N, N), symmetric, positive definite, constant; kg m**2
+    damping : Matrix, shape (N, N), symmetric, constant; N m s
+    stiffness : Matrix, shape (N, N), symmetric, a function of t: the coefficient of theta; N m
+    remainder : Matrix, shape (N, 1), a function of t; zero without horizontal driving; N m
+
+    divisor : what the equations have been divided by; 1, or as :meth:`divided` says
+
+    The units are those before :meth:`divided`.  Immutable and exact.
+    """
+
+    scene: Scene
+    about: tuple[Any, ...]
+    A: Any = field(repr=False)
+    damping: Any = field(repr=False)
+    stiffness: Any = field(repr=False)
+    remainder: Any = field(repr=False)
+    divisor: Any = Integer(1)
+
+    @property
+    def t(self) -> Any:
+        """The Symbol of time."""
+        return self.scene.t
+
+    @property
+    def coordinates(self) -> Any:
+        """The deviations ``theta1(t), ..., thetaN(t)``, shape (N, 1); rad."""
+        return column(self.scene.coordinates)
+
+    def divided(self, by: Any = None) -> LinearEquations:
+        """The same equations divided by ``by``, or by ``m l**2`` of equal rods when nothing is given.
+
+        ``by = m l**2`` is the normalisation of [Neves] In[36]: A has no unit (Out[38]), and stiffness (Out[39]) and
+        remainder (Out[40]) are in 1/s**2; doing it twice changes nothing.  ``by`` is a nonzero constant, in kg m**2
+        for these units.
+
+        Raises SceneError if nothing is given and the rods differ; QuantityError if ``by`` is 0 or depends on t.
+
+        >>> from sympy import symbols
+        >>> from lagrangian import Rod, Scene, euler_lagrange
+        >>> rods = [Rod.uniform(*symbols("m l"))] * 2
+        >>> linearize(euler_lagrange(Scene(rods))).divided().A
+        Matrix([
+        [4/3, 1/2],
+        [1/2, 1/3]])
+        """
+        factor = self.divisor / _inertia(self.scene) if by is None else 1 / _divisor(by, self.t)
+        parts = {name: (getattr(self, name) * factor).applyfunc(expand)
+                 for name in ("A", "damping", "stiffness", "remainder")}
+        return replace(self, divisor=self.divisor / factor, **parts)
+
+    def homogeneous(self) -> LinearEquations:
+        """The same equations without the remainder: what decides stability, not where a driven chain goes."""
+        return replace(self, remainder=column([Integer(0)] * len(self.scene)))
+
+    def first_order(self, omega0: Any, dimensionless: bool = True) -> FirstOrderSystem:
+        """``P, tau, period`` of ``dx/dtau = P(tau) x`` in the phase ``tau = omega0 t``, for ``FloquetMatrix``.
+
+        The article's P after Out[43], for any N.  ``omega0`` is a constant angular frequency (rad/s), a Symbol or a
+        number; ``P`` has shape (2N, 2N) and no unit.  With ``eta = epsilon cos(omega0 t)`` the period is 2 pi.
+
+        For equal rods with ``dimensionless=True`` the parameters are ``h = epsilon/l``, if epsilon is a Symbol and
+        the only amplitude, and ``v = omega0 sqrt(l/g)``, if omega0 is a Symbol; ``where`` of the result says what was
+        used.  Otherwise P keeps the symbols of the scene.
+
+        Exact.  With a nonzero remainder there is no such P, and the call raises: take ``homogeneous()`` first.
+
+        Raises
+        ------
+        InhomogeneousError
+            The remainder is not zero (horizontal driving).
+        NotPeriodicError
+            The driving is not a sum of cosines and sines of rational multiples of omega0 t.
+        NameClashError
+            The scene uses a Symbol called tau, h or v for something else.
+        QuantityError, NotAQuantityError, TextError
+            omega0 is zero, depends on time, or is not a number or expression.
+
+        Speed and accuracy: with equal rods A is a matrix of numbers and its inverse is immediate.  The inverse for N
+        rods with all-different symbols is a quotient of polynomials that grows fast with N.
+
+        >>> from sympy import cos, symbols
+        >>> from lagrangian import Rod, Scene, Support, euler_lagrange
+        >>> m, l, epsilon, omega0, t = symbols("m l epsilon omega0 t")
+        >>> scene = Scene([Rod.uniform(m, l)], Support(eta=epsilon*cos(omega0*t)))
+        >>> P, tau, period = linearize(euler_lagrange(scene)).first_order(omega0)
+        >>> P[1, 0], period
+        (-3*h*cos(tau)/2 + 3/(2*v**2), 2*pi)
+        """
+        omega0 = frequency(omega0, self.t)
+        if any(expand(entry) != 0 for entry in self.remainder):
+            raise InhomogeneousError(
+                f"x' = P x has no place for a remainder, and this one is {_short(self.remainder)} (from the "
+                f"horizontal driving).  lin.homogeneous().first_order(omega0) drops it: the Floquet multipliers, and "
+                f"with them stability, are those of that part."
+            )
+        scales = natural_scales(self.scene, omega0) if dimensionless else ()
+        tau = fresh_symbol("tau", self.scene, omega0)
+        lin = self.divided() if self.scene.equal_rod else self
+        inverse = _inverse(lin.A)
+
+        def accelerations(torque: Any, power: int) -> Any:
+            return _times(-inverse, (torque / omega0**power).applyfunc(lambda x: in_scales(x, scales)))
+
+        modes = {q: [accelerations(part, 2) for part in pair]
+                 for q, pair in matrix_modes(lin.stiffness, self.t, omega0).items()}
+        block = sum((c * cos(q * tau) + s * sin(q * tau) for q, (c, s) in modes.items()), zeros(len(self.scene)))
+        drag = accelerations(lin.damping, 1)
+        P = ImmutableDenseMatrix(_blocks(block, drag))
+        return FirstOrderSystem(P, tau, _period(modes), tuple((scale.symbol, scale.meaning) for scale in scales))
+
+    def __repr__(self) -> str:
+        n, rest = len(self.scene), "" if not any(self.about) else f", about {self.about}"
+        return f"LinearEquations(A theta'' + stiffness theta = 0, A of shape ({n}, {n}){rest}, {self.scene})"
+
+    def _repr_latex_(self) -> str:
+        terms = [(self.A, 2), (self.damping, 1), (self.stiffness, 0)]
+        theta = {k: latex(column(x.diff((self.t, k)) if k else x for x in self.coordinates)) for k in (0, 1, 2)}
+        sides = [f"{latex(matrix)} {theta[k]}" for matrix, k in terms if any(matrix)]
+        sides += [latex(self.remainder)] if any(self.remainder) else []
+        return f"${' + '.join(sides)} = 0$" if len(self.scene) <= 3 else r"$A\ddot\theta + K(t)\theta = 0$"
+
+
+def linearize(equations: EquationsOfMotion, about: Iterable[Any] | None = None) -> LinearEquations:
+    """Small motions about the angles ``about`` at rest; all zero, upright or hanging, by default.
+
+    ``A = M``, ``stiffness = -df/dtheta``, ``damping = -df/dtheta'`` and ``remainder = -f`` at rest there
+    ([Neves] In[36]-[40] before its division by ``m l**2``; see :meth:`LinearEquations.divided`).  ``about`` holds N
+    constant angles in rad; for an upright scene N times ``pi`` is hanging rest.  Exact.
+
+    Raises
+    ------
+    NotAnEquilibriumError
+        The chain does not stay at ``about``: weight, springs and vertical driving leave a moment there.
+    NotASceneError
+        ``equations`` is not from :func:`euler_lagrange`.
+    SceneError, QuantityError, NotAQuantityError, TextError
+        ``about`` has not N entries, or one of them is not a constant angle.
+
+    >>> from sympy import pi, symbols
+    >>> from lagrangian import Rod, Scene, euler_lagrange
+    >>> equations = euler_lagrange(Scene([Rod.bob(*symbols("m l"))]))
+    >>> linearize(equations).stiffness, linearize(equations, about=[pi]).stiffness
+    (Matrix([[-g*l*m]]), Matrix([[g*l*m]]))
+    """
+    if not isinstance(equations, EquationsOfMotion):
+        raise NotASceneError(f"linearize takes the result of euler_lagrange, and this is {equations!r}.")
+    scene = equations.scene
+    rest = _rest_angles(about, scene)
+    x = [Dummy(f"x{i}") for i in range(len(scene))]
+    y = [Dummy(f"y{i}") for i in range(len(scene))]
+    to_symbols = dict(zip((*scene.velocities, *scene.coordinates), (*y, *x), strict=True))
+    still, there = dict.fromkeys(y, Integer(0)), dict(zip(x, rest, strict=True))
+    resistance = [-force.xreplace(to_symbols) for force in equations.forcing]
+    at_rest = [side.xreplace(still) for side in resistance]
+    moving = [side.xreplace(there) for side in resistance]
+    remainder = [expand(side.xreplace(there)) for side in at_rest]
+    _check_equilibrium(scene, rest, remainder, [push.xreplace(to_symbols).xreplace(there) for push in thrust(scene)])
+    return LinearEquations(
+        scene, rest,
+        A=equations.mass_matrix.xreplace(to_symbols).xreplace(there),
+        damping=_gradient(moving, y, still),
+        stiffness=_gradient(at_rest, x, there),
+        remainder=column(remainder),
+    )
+
+
+def _gradient(sides: list[Any], variables: list[Any], values: Mapping[Any, Any]) -> Any:
+    """``d sides[i] / d variables[j]`` at ``values``, expanded."""
+    rows = [[expand(side.diff(x).xreplace(values)) if x in side.free_symbols else Integer(0) for x in variables]
+            for side in sides]
+    return ImmutableDenseMatrix(rows)
+
+
+def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
+    if about is None:
+        return (Integer(0),) * len(scene)
+    refuse_text(about, "about")
+    if not isinstance(about, Iterable):
+        raise NotAQuantityError(f"about is {about!r}: give a list of {len(scene)} angles.")
+    angles = tuple(quantity(angle, f"about[{i}]") for i, angle in enumerate(about))
+    if len(angles) != len(scene):
+        raise SceneError(f"about holds one angle a rod, and here are {len(angles)} angles for {len(scene)} rods.")
+    for angle in angles:
+        if scene.t in angle.free_symbols or angle.atoms(AppliedUndef):
+            raise QuantityError(f"an equilibrium is constant, and the angle {angle} is not: give constant angles.")
+    return angles
+
+
+def _check_equilibrium(scene: Scene, rest: tuple[Any, ...], remainder: list[Any], pushes: list[Any]) -> None:
+    for i, (moment, push) in enumerate(zip(remainder, pushes, strict=True), 1):
+        left = expand(moment - push)
+        if left != 0 and left.equals(0) is not True:
+            raise NotAnEquilibriumError(
+                f"the angles {rest} are no equilibrium: there the moment {-left} turns rod {i}.  Linearise about an "
+                f"equilibrium: 0 or pi for every angle is one where no spring is strained."
+            )
+
+
+def _inertia(scene: Scene) -> Any:
+    rod = scene.equal_rod
+    if rod is None:
+        raise SceneError(
+            f"m l**2 has a meaning where all rods are equal, and here they differ: {scene.rods[0]} and "
+            f"{next(r for r in scene.rods if r != scene.rods[0])}.  Say by what to divide: divided(by)."
+        )
+    return rod.mass * rod.length**2
+
+
+def _divisor(by: Any, t: Any) -> Any:
+    factor = quantity(by, "by")
+    if factor.is_zero or t in factor.free_symbols:
+        raise QuantityError(f"equations are divided by a constant that is not 0, and by is {factor}.")
+    return factor
+
+
+def frequency(omega0: Any, t: Any) -> Any:
+    """``omega0`` as a nonzero constant; raises as :func:`quantity`, and QuantityError."""
+    omega0 = quantity(omega0, "omega0")
+    if omega0.is_zero or t in omega0.free_symbols or omega0.atoms(AppliedUndef):
+        raise QuantityError(f"omega0 is a nonzero constant angular frequency, and this one is {omega0}.")
+    return omega0
+
+
+def _short(matrix: Any) -> str:
+    text = str(list(matrix))
+    return text if len(text) < 120 else text[:117] + "..."
+
+
+def _inverse(A: Any) -> Any:
+    """``A**-1``; where A holds symbols, as cofactors over the determinant in A's own entries."""
+    if all(entry.is_number for entry in A):
+        return A.to_DM(field=True).inv().to_Matrix()
+    names = {entry: Dummy() for entry in A if not entry.is_number}
+    values = {dummy: entry for entry, dummy in names.items()}
+    adjugate, determinant = A.applyfunc(lambda x: names.get(x, x)).to_DM().adj_det()
+    denominator = determinant if isinstance(determinant, Expr) else adjugate.domain.to_sympy(determinant)
+    return adjugate.to_Matrix().xreplace(values) / denominator.xreplace(values)
+
+
+def _times(left: Any, right: Any) -> Any:
+    """``left @ right``, expanded where ``left`` is a matrix of numbers."""
+    product = left * right
+    return product.applyfunc(expand) if all(entry.is_number for entry in left) else product
+
+
+def _blocks(stiffness: Any, damping: Any) -> Any:
+    n = stiffness.rows
+    return zeros(n).row_join(eye(n)).col_join(stiffness.row_join(damping))
+
+
+# --- trigonometric polynomials in tau: {q: (coefficient of cos q tau, coefficient of sin q tau)}, q >= 0 ------
+
+
+def modes_of(expression: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
+    """``expression(t)`` at ``t = tau/omega0`` as modes ``{q: (c, s)}``, the sum of ``c cos q tau + s sin q tau``.
+
+    Raises NotPeriodicError unless it is a finite sum with rational ``q``.
+    """
+    if t not in expression.free_symbols:
+        return {Integer(0): (expression, Integer(0))}
+    if isinstance(expression, Add):
+        return _sum(modes_of(term, t, omega0) for term in expression.args)
+    if isinstance(expression, Mul):
+        return reduce(_product, (modes_of(factor, t, omega0) for factor in expression.args))
+    if isinstance(expression, Pow) and expression.base != t and expression.exp.is_Integer and expression.exp > 0:
+        return reduce(_product, [modes_of(expression.base, t, omega0)] * int(expression.exp))
+    if isinstance(expression, (cos, sin)):
+        return _single(expression, t, omega0)
+    remedy = (f"replace {expression} by the motion meant, such as epsilon*cos(omega0*{t})"
+              if expression.atoms(AppliedUndef, Derivative) else "write the drive as a sum of cosines and sines")
+    raise NotPeriodicError(f"{expression} is not a trigonometric polynomial in tau = {omega0}*{t}: {remedy}.")
+
+
+def _single(wave: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
+    """``cos`` or ``sin`` of ``q omega0 t + phase``."""
+    angle = expand(wave.args[0])
+    rate = angle.coeff(t, 1)
+    q, phase = expand(rate / omega0), expand(angle - rate * t)
+    if not isinstance(q, Rational) or t in phase.free_symbols:
+        raise NotPeriodicError(
+            f"{wave} turns {rate if t not in phase.free_symbols else angle} in time {t}, not a rational multiple of "
+            f"omega0 = {omega0}: give as omega0 a frequency that divides every one of the drive."
+        )
+    side = 1 if q > 0 else -1
+    if isinstance(wave, cos):
+        return {abs(q): (cos(phase), -side * sin(phase))}
+    return {abs(q): (sin(phase), side * cos(phase))}
+
+
+def _sum(parts: Iterable[dict[Any, tuple[Any, Any]]]) -> dict[Any, tuple[Any, Any]]:
+    total: dict[Any, tuple[Any, Any]] = {}
+    for part in parts:
+        for q, (c, s) in part.items():
+            c0, s0 = total.get(q, (Integer(0), Integer(0)))
+            total[q] = (c0 + c, s0 + s)
+    return total
+
+
+def _product(left: dict[Any, tuple[Any, Any]], right: dict[Any, tuple[Any, Any]]) -> dict[Any, tuple[Any, Any]]:
+    """``2 (c cos p + s sin p)(C cos q + S sin q) = (cC - sS) cos(p+q) + (sC + cS) sin(p+q) + ...(p-q)``."""
+    def beats() -> Iterator[dict[Any, tuple[Any, Any]]]:
+        for p, (c, s) in left.items():
+            for q, (C, S) in right.items():
+                yield {p + q: ((c * C - s * S) / 2, (s * C + c * S) / 2)}
+                side = 1 if p >= q else -1
+                yield {abs(p - q): ((c * C + s * S) / 2, side * (s * C - c * S) / 2)}
+    return _sum(beats())
+
+
+def matrix_modes(matrix: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
+    """The modes of a matrix: two matrices a frequency; zero frequencies and zero modes are left out of sines."""
+    shape = matrix.shape
+    entries = [modes_of(entry, t, omega0) for entry in matrix]
+    none = (Integer(0), Integer(0))
+    found = sorted({q for modes in entries for q in modes})
+    return {q: tuple(ImmutableDenseMatrix(*shape, [expand(modes.get(q, none)[k]) if q or k == 0 else Integer(0)
+                                                   for modes in entries]) for k in (0, 1)) for q in found}
+
+
+def _period(modes: Mapping[Any, list[Any]]) -> Any:
+    present = [q for q, parts in modes.items() if q != 0 and any(any(part) for part in parts)]
+    return 2 * pi / reduce(gcd, present) if present else 2 * pi
+
+
+# --- h and v --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Scale:
+    """``symbol`` stands for ``meaning``; ``old`` is replaced by ``new`` to bring it in."""
+
+    symbol: Any
+    meaning: Any
+    old: Any
+    new: Any
+
+
+def natural_scales(scene: Scene, omega0: Any) -> tuple[Scale, ...]:
+    """``h = epsilon/l`` and ``v = omega0 sqrt(l/g)`` ([Neves] (16), (17)), as far as equal rods have them."""
+    rod, g = scene.equal_rod, scene.gravity
+    if rod is None:
+        return ()
+    scales: list[Scale] = []
+    amplitude = _amplitude(scene, omega0)
+    if amplitude is not None:
+        h = fresh_symbol("h", scene, omega0, {amplitude: amplitude / rod.length})
+        scales.append(Scale(h, amplitude / rod.length, amplitude, h * rod.length))
+    if isinstance(omega0, Symbol) and not g.is_zero and not g.is_negative:
+        speed = omega0 * sqrt(rod.length / g)
+        v = fresh_symbol("v", scene, omega0, {omega0: speed})
+        scales.append(Scale(v, speed, omega0, v * sqrt(g / rod.length)))
+    return tuple(scales)
+
+
+def _amplitude(scene: Scene, omega0: Any) -> Any:
+    """The Symbol epsilon of a vertical drive ``epsilon cos q tau`` or ``epsilon sin q tau``, if it is one."""
+    rise = modes_of(scene.support_acceleration[1], scene.t, omega0)
+    waves = [expand(-x / (q * omega0) ** 2) for q, pair in rise.items() if q != 0 for x in pair if x != 0]
+    elsewhere = {x for _, value in scene.constants for x in value.free_symbols} | omega0.free_symbols
+    single = len(waves) == 1 and isinstance(waves[0], Symbol) and waves[0] not in elsewhere
+    return waves[0] if single else None
+
+
+def fresh_symbol(name: str, scene: Scene, omega0: Any, replaced: Mapping[Any, Any] | None = None) -> Any:
+    """A Symbol called ``name``; raises NameClashError if one of that name stays in the result.
+
+    ``replaced`` maps a Symbol that gives way to the new one to what the new one means.
+    """
+    gone = {old for old, meaning in (replaced or {}).items() if old == meaning} | {scene.t}
+    if any(x.name == name for x in (scene.free_symbols | omega0.free_symbols) - gone):
+        raise NameClashError(
+            f"the result needs a Symbol called {name}, and the scene has one of its own: rename the scene's {name}, "
+            f"or pass dimensionless=False, which needs no h and v."
+        )
+    return Symbol(name)
+
+
+def in_scales(coefficient: Any, scales: tuple[Scale, ...]) -> Any:
+    """``coefficient`` with h and v put in, expanded."""
+    return expand(expand(coefficient).xreplace({scale.old: scale.new for scale in scales}))

@@ -1,0 +1,137 @@
+"""What has no answer is refused by name, before SymPy sees text, with the value in the message."""
+
+from fractions import Fraction
+
+import pytest
+from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, cos, nan, oo, pi, sqrt, symbols
+
+from lagrangian import (
+    DriveError,
+    InhomogeneousError,
+    LagrangianError,
+    NameClashError,
+    NotAnEquilibriumError,
+    NotAQuantityError,
+    NotASceneError,
+    NotDecoupledError,
+    NotPeriodicError,
+    QuantityError,
+    Rod,
+    Scene,
+    SceneError,
+    Support,
+    TextError,
+    euler_lagrange,
+    linearize,
+    normal_modes,
+)
+
+m, l, g, t, epsilon, omega0 = symbols("m l g t epsilon omega0")
+rod = Rod.uniform(m, l)
+driven = Support(eta=epsilon * cos(omega0 * t))
+
+
+def linear(rods=(rod,), support=driven, **options):
+    """The linear equations of ``rods``, driven vertically unless said otherwise."""
+    return linearize(euler_lagrange(Scene(rods, support, **options)))
+
+
+@pytest.mark.parametrize("ask, error, word", [
+    (lambda: Rod.uniform(1, 0), QuantityError, "length"),
+    (lambda: Rod.uniform(1, -2), QuantityError, "-2"),
+    (lambda: Rod.uniform(0, 1), QuantityError, "mass"),
+    (lambda: Rod.bob(-1, 1), QuantityError, "mass"),
+    (lambda: Rod.bob(1, Symbol("l", negative=True)), QuantityError, "positive"),
+    (lambda: Rod(1, 1, 1, Rational(1, 2)), QuantityError, "moment of inertia"),
+    (lambda: Rod(m, l, l, l / 2), QuantityError, "moment of inertia"),
+    (lambda: Rod(1, 1, 0, 0), QuantityError, "gyration"),
+    (lambda: Rod.uniform(float("nan"), 1), QuantityError, "finite"),
+    (lambda: Rod.uniform(1, float("inf")), QuantityError, "finite"),
+    (lambda: Rod.uniform(1, oo), QuantityError, "finite"),
+    (lambda: Rod.uniform(nan, 1), QuantityError, "finite"),
+    (lambda: Rod.uniform(1, I), QuantityError, "real"),
+    (lambda: Rod.uniform(True, 1), NotAQuantityError, "truth"),
+    (lambda: Rod.uniform(Matrix([1]), 1), NotAQuantityError, "scalar"),
+    (lambda: Rod.uniform(None, 1), NotAQuantityError, "None"),
+    (lambda: Rod.uniform(1j, 1), NotAQuantityError, "scalar"),
+    (lambda: Scene([]), SceneError, "positive"),
+    (lambda: Scene(-2), SceneError, "positive"),
+    (lambda: Scene(rod), SceneError, "list"),
+    (lambda: Scene([rod, 3]), NotAQuantityError, "Rod"),
+    (lambda: Scene([rod], support=(0, 1)), NotAQuantityError, "Support"),
+    (lambda: Scene([rod], upright=1), NotAQuantityError, "True"),
+    (lambda: Scene([rod], t=3), NotAQuantityError, "Symbol"),
+    (lambda: Scene([rod] * 2, damping=[1]), SceneError, "2 rods"),
+    (lambda: Scene([rod] * 2, springs=[1, 2, 3]), SceneError, "3 values"),
+    (lambda: Scene([rod], damping=[-1]), QuantityError, "-1"),
+    (lambda: Scene([rod], damping=1), NotAQuantityError, "list"),
+    (lambda: Scene([rod], gravity=oo), QuantityError, "gravity"),
+    (lambda: Scene([rod], gravity=g + cos(t)), QuantityError, "eta''"),
+    (lambda: Scene([Rod.uniform(t, l)]), QuantityError, "constant"),
+    (lambda: Scene([Rod.uniform(Symbol("theta1"), l)]), QuantityError, "theta1"),
+    (lambda: Scene([rod], Support(eta=Symbol("theta1"))), DriveError, "theta1"),
+    (lambda: Scene([rod], Support(xi=Function("theta1")(t))), DriveError, "theta1"),
+    (lambda: Scene([rod], Support(eta=Abs(cos(t)))), DriveError, "twice"),
+    (lambda: Scene([rod], Support(eta=Heaviside(t))), DriveError, "twice"),
+    (lambda: Scene([rod], Support(eta=cos(t)), t=Symbol("t", real=True)), DriveError, "assumptions"),
+    (lambda: Support(eta=I), QuantityError, "real"),
+    (lambda: Support(eta=nan), QuantityError, "finite"),
+    (lambda: euler_lagrange(rod), NotASceneError, "Scene"),
+    (lambda: linearize(Scene([rod])), NotASceneError, "euler_lagrange"),
+    (lambda: normal_modes(Scene([rod])), NotASceneError, "linearize"),
+    (lambda: linearize(euler_lagrange(Scene([rod] * 2)), about=[pi / 4, 0]), NotAnEquilibriumError, "equilibrium"),
+    (lambda: linearize(euler_lagrange(Scene([rod], springs=[1])), about=[pi]), NotAnEquilibriumError, "pi"),
+    (lambda: linearize(euler_lagrange(Scene([rod])), about=[0, 0]), SceneError, "2 angles"),
+    (lambda: linearize(euler_lagrange(Scene([rod])), about=[t]), QuantityError, "constant"),
+    (lambda: linear(support=Support(xi=cos(omega0 * t))).first_order(omega0), InhomogeneousError, "homogeneous()"),
+    (lambda: linear(support=Support(eta=Function("eta")(t))).first_order(omega0), NotPeriodicError, "eta"),
+    (lambda: linear(support=Support(eta=t**4)).first_order(omega0), NotPeriodicError, "t**2"),
+    (lambda: linear(support=Support(eta=cos(3 * t))).first_order(sqrt(2)), NotPeriodicError, "cos(3*t)"),
+    (lambda: linear(support=Support(eta=cos(t**2))).first_order(1), NotPeriodicError, "t**2"),
+    (lambda: linear().first_order(0), QuantityError, "omega0"),
+    (lambda: linear().first_order(t), QuantityError, "omega0"),
+    (lambda: linear([Rod.uniform(Symbol("tau"), l)]).first_order(omega0), NameClashError, "tau"),
+    (lambda: linear([Rod.uniform(m, l)], gravity=Symbol("v")).first_order(omega0), NameClashError, "v"),
+    (lambda: linear([rod, Rod.bob(m, l)]).divided(), SceneError, "equal"),
+    (lambda: linear().divided(0), QuantityError, "not 0"),
+    (lambda: normal_modes(linear([rod] * 2, springs=[1, 1])), NotDecoupledError, "function of time"),
+    (lambda: normal_modes(linear([rod], damping=[1])), NotDecoupledError, "damping"),
+    (lambda: normal_modes(linear([rod] * 2, Support(xi=t**2))), InhomogeneousError, "homogeneous()"),
+    (lambda: normal_modes(linear([Rod.uniform(m, x) for x in symbols("a b c")])), NotDecoupledError, "a, b, c"),
+    (lambda: normal_modes(linear(), digits=0), QuantityError, "digits"),
+    (lambda: normal_modes(linear(support=Support(eta=cos(2 * t)))).mathieu(1), NotPeriodicError, "2*tau"),
+])
+def test_impossible_question_is_refused(ask, error, word):
+    """The named exception, whose message holds the value or the word that a reader looks for."""
+    with pytest.raises(error) as refused:
+        ask()
+
+    assert issubclass(error, LagrangianError) and issubclass(error, (ValueError, TypeError))
+    assert word in str(refused.value)
+
+
+TRAP = "__import__('sys').exit(7)"
+
+
+@pytest.mark.parametrize("ask", [
+    lambda: Rod(TRAP, 1, 1, 1), lambda: Rod(1, TRAP, 1, 1), lambda: Rod(1, 1, TRAP, 1), lambda: Rod(1, 1, 1, TRAP),
+    lambda: Rod.uniform(TRAP, 1), lambda: Rod.uniform(1, TRAP), lambda: Rod.bob(1, TRAP),
+    lambda: Support(TRAP), lambda: Support(0, TRAP), lambda: Scene(TRAP), lambda: Scene([TRAP]),
+    lambda: Scene([rod], TRAP), lambda: Scene([rod], gravity=TRAP), lambda: Scene([rod], damping=TRAP),
+    lambda: Scene([rod], damping=[TRAP]), lambda: Scene([rod], springs=[TRAP]), lambda: Scene([rod], t="t"),
+    lambda: linearize(euler_lagrange(Scene([rod])), about=TRAP),
+    lambda: linearize(euler_lagrange(Scene([rod])), about=[TRAP]),
+    lambda: linear().first_order(TRAP), lambda: linear().divided(TRAP), lambda: normal_modes(linear(), TRAP),
+    lambda: normal_modes(linear()).mathieu(TRAP),
+])
+def test_text_is_never_evaluated(ask):
+    """TextError wherever mathematics is expected."""
+    with pytest.raises(TextError, match="never evaluated"):
+        ask()
+
+
+def test_numbers_of_every_kind_are_exact():
+    """A float is the dyadic number that it is; fractions stay fractions."""
+    assert Rod.uniform(0.5, Fraction(1, 3)) == Rod.uniform(Rational(1, 2), Rational(1, 3))
+    assert Rod.bob(0.1, 1).mass == Rational(3602879701896397, 36028797018963968)
+    assert Support(eta=0.25 * cos(t)).eta == cos(t) / 4
