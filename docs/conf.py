@@ -1,6 +1,10 @@
 """Sphinx configuration; the pages are built with warnings as errors."""
 
+from configparser import ConfigParser
 from importlib.metadata import version as installed_version
+from pathlib import Path
+
+from docutils.parsers.rst import Directive
 
 project = "fastpicard"
 author = "The fastpicard developers"
@@ -58,5 +62,27 @@ def house_style(app, what, name, obj, options, lines):
     lines[:] = result
 
 
+class ReadingOrder(Directive):
+    """The opening of every file of a package, in the order of its layers in setup.cfg."""
+
+    required_arguments = 1
+
+    def run(self):
+        package = self.arguments[0]
+        top = Path(__file__).parent.parent
+        settings = ConfigParser()
+        settings.read(top / "setup.cfg")
+        layers = settings[f"importlinter:contract:{package}-layers"]["layers"]
+        names = layers.replace("(", "").replace(")", "").replace("|", " ").split()
+        lines = []
+        for name in reversed(names):
+            if (top / package / f"{name}.py").exists():
+                lines += [f".. rubric:: ``{package}/{name}.py``", ""]
+                lines += [f".. automodule:: {package}.{name}", "   :no-members:", "   :no-index:", ""]
+        self.state_machine.insert_input(lines, f"the files of {package}")
+        return []
+
+
 def setup(app):
+    app.add_directive("reading-order", ReadingOrder)
     app.connect("autodoc-process-docstring", house_style, priority=400)
