@@ -1,0 +1,52 @@
+r"""Exact Picard iterates for linear differential equations with periodic coefficients.
+
+``x' = P(t) x`` with ``P`` a finite trigonometric polynomial whose coefficients
+may hold symbolic parameters: the port and continuation of Armando G. M. Neves'
+Mathematica package FastPicard ([Neves]: "Approximating Solutions of Linear
+Ordinary Differential Equations with Periodic Coefficients by Exact Picard
+Iterates", The Mathematica Journal 10(1), 2006).
+
+The files are read, and import one another, in this order: errors, ring, modes,
+expressions, evaluate, vectorise, series, integrate, matrix, increments, picard,
+floquet, mathieu.
+"""
+
+from fastpicard.errors import (
+    BadInputError,
+    BadTypeError,
+    FastPicardError,
+    MissingParameterError,
+    NotInFamilyError,
+    NotPeriodicError,
+    ShapeError,
+)
+from fastpicard.floquet import FloquetMatrix
+from fastpicard.integrate import gather, new_integrate, product_to_sum
+from fastpicard.mathieu import mathieu_a, mathieu_b
+from fastpicard.matrix import SeriesMatrix
+from fastpicard.picard import FundamentalMatrix, PicardIterate, fast_picard, picard
+from fastpicard.series import PoissonSeries
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "BadInputError",
+    "BadTypeError",
+    "FastPicardError",
+    "FloquetMatrix",
+    "FundamentalMatrix",
+    "MissingParameterError",
+    "NotInFamilyError",
+    "NotPeriodicError",
+    "PicardIterate",
+    "PoissonSeries",
+    "SeriesMatrix",
+    "ShapeError",
+    "fast_picard",
+    "gather",
+    "mathieu_a",
+    "mathieu_b",
+    "new_integrate",
+    "picard",
+    "product_to_sum",
+]

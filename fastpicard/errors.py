@@ -1,0 +1,34 @@
+"""The ways a question can have no answer.
+
+Every exception says three things: what was claimed, the value that refutes it,
+and what would do instead.  All of them are :class:`FastPicardError`; each is
+also the built-in exception a caller would have guessed.
+"""
+
+
+class FastPicardError(Exception):
+    """Whatever this package refuses to answer."""
+
+
+class BadInputError(FastPicardError, ValueError):
+    """A value of the right kind for which the question has no meaning."""
+
+
+class BadTypeError(FastPicardError, TypeError):
+    """A value of the wrong kind; text, for one, is never evaluated as mathematics."""
+
+
+class NotInFamilyError(BadInputError):
+    """An expression that is no finite sum of ``c t**r cos(q t + phi)`` and ``c t**r sin(q t + phi)``."""
+
+
+class NotPeriodicError(BadInputError):
+    """A matrix that does not repeat with the period asked for."""
+
+
+class ShapeError(BadInputError):
+    """Matrices or vectors whose sizes do not fit together."""
+
+
+class MissingParameterError(BadInputError):
+    """A number was asked for while a parameter has no value."""

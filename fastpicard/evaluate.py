@@ -1,0 +1,277 @@
+r"""Numbers from exact results: float64, mpmath digits, balls.
+
+A sum of terms in ``t**r cos(q t)`` evaluated term by term in float64 may lose
+every digit: the terms of an iterate of order 40 exceed their sum by ``1e20``.
+So every number is computed in balls (python-flint ``arb``: a midpoint and a
+radius that provably contains the truth), the working precision is raised until
+the radius is below the digits asked for, and only then is the midpoint rounded.
+
+A whole mode is one polynomial at an imaginary point,
+
+    sum f_r c_r + i sum f_r s_r = exp(i alpha) sum_r f_r (-i t)**r / r!
+"""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Callable, Iterable, Mapping
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import sympy
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz
+from mpmath import libmp
+from sympy import Expr, Symbol
+
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
+from fastpicard.modes import COS, Linear, Modes
+from fastpicard.ring import Monomial, expression_of, rational, symbols_of
+
+EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
+Values = Mapping[Any, Any]
+
+
+# -- numbers in --------------------------------------------------------------
+
+
+def exact_number(value: Any, what: str) -> Any:
+    """A number as ``fmpq``, ``arb`` or real SymPy constant: the exact number the argument is.
+
+    A float is the dyadic rational it stands for.
+
+    Raises
+    ------
+    BadTypeError
+        for text, complex numbers and anything that is no number.
+    BadInputError
+        for nan and infinities.
+    """
+    if isinstance(value, arb):
+        return _finite(value, value.is_finite(), what)
+    if isinstance(value, fmpq | fmpz):
+        return fmpq(value)
+    if isinstance(value, Expr):
+        return _sympy_number(value, what)
+    if isinstance(value, mpmath.mpf):
+        return rational(sympy.Float(_finite(value, mpmath.isfinite(value), what), precision=max(value._mpf_[3], 53)))
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  Give an int, "
+                           "Fraction, SymPy number, mpf, float or arb; text is never evaluated as mathematics.")
+    exact = Fraction(_finite(value, math.isfinite(value), what))
+    return fmpq(exact.numerator, exact.denominator)
+
+
+def _finite(value: Any, finite: bool, what: str) -> Any:
+    if not finite:
+        raise BadInputError(f"{what} must be finite, but it is {value}.  Give a finite number.")
+    return value
+
+
+def _sympy_number(value: Expr, what: str) -> Any:
+    if value.is_Rational or value.is_Float:
+        return rational(_finite(value, value.is_finite is True, what))
+    if value.free_symbols or not value.is_number:
+        raise BadTypeError(f"{what} must be a number, but it is the expression {value}.  Substitute numbers first.")
+    if value.is_extended_real is not True or not value.is_finite:
+        raise BadInputError(f"{what} must be real and finite, but it is {value}.  Give a finite real number.")
+    return value
+
+
+def exact_values(values: Values | None, needed: Iterable[Symbol]) -> dict[Symbol, Any]:
+    """The values of the parameters that occur, exactly.
+
+    Raises
+    ------
+    MissingParameterError
+        if one of them has none.
+    """
+    given = dict(values or {})
+    for key in given:
+        if not isinstance(key, Symbol):
+            raise BadTypeError(f"values must map SymPy Symbols to numbers, but a key is {key!r}, a {type(key).__name__}.  "
+                               "Use the Symbol itself: {a: 2}.")
+    missing = sorted((s for s in needed if s not in given), key=str)
+    if missing:
+        names = ", ".join(map(str, missing))
+        raise MissingParameterError(f"every parameter needs a value, but {names} has none among {given}.  "
+                                    f"Add {names} to the values.")
+    return {s: exact_number(given[s], f"the value of {s}") for s in needed}
+
+
+def ball(value: Any) -> Any:
+    """An exact number as a ball at the working precision."""
+    if isinstance(value, arb):
+        return value
+    return arb(value) if isinstance(value, fmpq) else expression_ball(value, {})
+
+
+_FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
+    sympy.sin: lambda x: x.sin(), sympy.cos: lambda x: x.cos(), sympy.tan: lambda x: x.tan(),
+    sympy.exp: lambda x: x.exp(), sympy.log: lambda x: x.log(), sympy.atan: lambda x: x.atan(),
+    sympy.sinh: lambda x: x.sinh(), sympy.cosh: lambda x: x.cosh(), sympy.tanh: lambda x: x.tanh(),
+    sympy.Abs: abs, sympy.asin: lambda x: x.asin(), sympy.acos: lambda x: x.acos(),
+}
+
+
+def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
+    """A constant SymPy expression as a ball, at the values of its symbols."""
+    if e.is_Symbol:
+        return ball(values[e])
+    if e.is_Rational or e.is_Float:
+        return arb(rational(e))
+    if e is sympy.pi:
+        return arb.pi()
+    if e is sympy.E:
+        return arb.const_e()
+    parts = [expression_ball(x, values) for x in e.args]
+    if e.is_Add:
+        return sum(parts, arb(0))
+    if e.is_Mul:
+        return math.prod(parts, start=arb(1))
+    if e.is_Pow:
+        return _power(parts[0], parts[1], e.exp)
+    if e.func in _FUNCTIONS:
+        return _FUNCTIONS[e.func](*parts)
+    raise BadInputError(f"no rigorous value of {e} is known: {e.func} has no ball arithmetic here.  "
+                        "Replace it by a Symbol and give that a value.")
+
+
+def _power(base: Any, exponent: Any, e: Expr) -> Any:
+    if e.is_Integer:
+        return base ** int(e)
+    return base.root(int(e.q)) ** int(e.p) if e.is_Rational and e.q < 64 else (exponent * base.log()).exp()
+
+
+# -- series at a point -------------------------------------------------------
+
+
+def free_symbols(modes: Modes) -> set[Symbol]:
+    """The parameters of a series."""
+    angles = {m for _, (q, phi), _ in modes for m, _ in (*q, *phi)}
+    return symbols_of({m for _, _, m in modes} | angles)
+
+
+class Point:
+    """A time and parameter values in balls; remembers powers and angles while the precision lasts."""
+
+    def __init__(self, time: Any, values: Mapping[Symbol, Any]) -> None:
+        self.time = ball(time)
+        self.values = values
+        self.generators: dict[int, Any] = {}
+        self.monomials: dict[Monomial, Any] = {}
+        self.waves: dict[Any, Any] = {}
+
+    def monomial(self, monomial: Monomial) -> Any:
+        """The value of a monomial."""
+        if monomial not in self.monomials:
+            self.monomials[monomial] = math.prod((self._generator_power(g, e) for g, e in monomial), start=arb(1))
+        return self.monomials[monomial]
+
+    def _generator_power(self, number: int, exponent: Any) -> Any:
+        if number not in self.generators:
+            e = expression_of(number)
+            if e is sympy.I:
+                raise BadInputError("the value must be real, but the series contains I.  Evaluate its real and "
+                                    "imaginary parts one by one.")
+            self.generators[number] = expression_ball(e, self.values)
+        return _power(self.generators[number], arb(fmpq(exponent.numerator, exponent.denominator)), sympy.Rational(exponent))
+
+    def linear(self, form: Linear) -> Any:
+        """The value of a linear combination."""
+        return sum((self.monomial(m) * fmpq(c.numerator, c.denominator) for m, c in form), arb(0))
+
+    def wave(self, angle: Any) -> Any:
+        """``exp(i (q t + phi))``."""
+        if angle not in self.waves:
+            alpha = self.linear(angle[0]) * self.time + self.linear(angle[1])
+            self.waves[angle] = acb(alpha.cos(), alpha.sin())
+        return self.waves[angle]
+
+    def __call__(self, modes: Modes) -> Any:
+        """The value of a series."""
+        place = acb(0, -self.time)
+        value = arb(0)
+        for (kind, angle, monomial), f in modes.items():
+            amplitude = acb_poly(divided(f))(place) if f.degree() > 0 else acb(arb(f[0]))
+            wave = self.wave(angle) * amplitude
+            value += (wave.real if kind == COS else wave.imag) * self.monomial(monomial)
+        return value
+
+
+def divided(f: Any) -> Any:
+    """The coefficients over ``r!``: from the basis ``t**r / r!`` to powers."""
+    return fmpq_poly([c / math.factorial(r) for r, c in enumerate(f.coeffs())])
+
+
+# -- as many digits as asked for ---------------------------------------------
+
+
+def check_digits(digits: Any) -> int | None:
+    """``None`` for float64, or a positive number of decimal digits."""
+    if digits is None:
+        return None
+    if isinstance(digits, bool) or not isinstance(digits, numbers.Integral):
+        raise BadTypeError(f"digits must be None or a positive integer, but it is {digits!r}.  Use digits=50, say.")
+    if digits < 1:
+        raise BadInputError(f"digits must be at least 1, but it is {digits}.  Use digits=None for float64.")
+    return int(digits)
+
+
+def refine(compute: Callable[[], list[Any]], digits: int | None) -> list[Any]:
+    """Balls as accurate as asked for: the precision grows until every relative radius is small enough.
+
+    A value that ``EXTRA_BITS`` bits more cannot tell from zero is returned as an exact zero.
+    """
+    needed = 56 if digits is None else libmp.dps_to_prec(digits) + 4
+    precision = needed + 64
+    while True:
+        with ctx.workprec(precision):
+            result = compute()
+            if all(_accurate(x, needed) for x in result):
+                return result
+        if precision > needed + EXTRA_BITS:
+            return [_settle(x, needed) for x in result]
+        precision *= 2
+
+
+def _accurate(x: Any, needed: int) -> bool:
+    return bool(x == 0) or bool(x.is_finite() and x.rel_accuracy_bits() >= needed)
+
+
+def _settle(x: Any, needed: int) -> Any:
+    if _accurate(x, needed):
+        return x
+    if x.contains(0) and x.rad() < arb(2) ** -(needed + EXTRA_BITS // 2):
+        return arb(0)
+    raise BadInputError(f"the digits asked for cannot be had: the value lies in {x}.  Give exact parameters instead of "
+                        "balls with a radius, or check for a pole of the coefficients.")
+
+
+def to_number(x: Any, digits: int | None) -> Any:
+    """The midpoint of a ball as float, or as mpf with the digits asked for."""
+    mantissa, exponent = x.mid().man_exp()
+    if digits is None:
+        return float(mpmath.ldexp(mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), 60, "n")), 0))
+    return mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), libmp.dps_to_prec(digits), "n"))
+
+
+def evaluate(series: list[Modes], time: Any, values: Values | None, digits: int | None) -> list[Any]:
+    """The values of several series at one time and one set of parameters, as numbers.
+
+    Raises
+    ------
+    MissingParameterError
+        if a parameter that occurs has no value.
+    """
+    needed = set().union(*map(free_symbols, series)) if series else set()
+    exact = exact_values(values, needed)
+    when = exact_number(time, "the time")
+    digits = check_digits(digits)
+
+    def compute() -> list[Any]:
+        point = Point(when, exact)
+        return [point(modes) for modes in series]
+
+    return [to_number(x, digits) for x in refine(compute, digits)]

@@ -1,0 +1,470 @@
+r"""SymPy <-> series: the only reader and the only writer of SymPy trees.
+
+Reading accepts exactly the family F of [Neves], section 3, with symbolic
+coefficients: sums and products of constants, ``t**r``, ``sin`` and ``cos`` of
+``q t + phi`` and ``exp(I (q t + phi))``.  Everything else is refused by name.
+
+Writing builds the expression SymPy itself would have built, argument by
+argument in canonical order, so that nothing is sorted or evaluated twice: the
+order of SymPy's ``Basic.compare`` is computed once per factor as a plain tuple.
+"""
+
+from __future__ import annotations
+
+import numbers
+from functools import lru_cache
+from math import factorial
+from typing import Any
+
+import sympy
+from flint import fmpq, fmpq_poly
+from sympy import Add, Basic, Expr, I, Mul, Pow, Symbol, cos, exp, pi, sin
+from sympy.core.basic import ordering_of_classes
+
+from fastpicard import modes as algebra
+from fastpicard.errors import BadInputError, BadTypeError, NotInFamilyError
+from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes
+from fastpicard.ring import (
+    ONE,
+    Monomial,
+    Polynomial,
+    add_term,
+    expression_of,
+    fraction,
+    generator,
+    monomial_expression,
+    multiply,
+    multiply_monomials,
+    power,
+    rational,
+    reciprocal,
+    to_expression,
+    to_sympy_number,
+)
+
+MAXIMAL_POWER = 10_000
+_FAMILY = "is not in the family of sums of t**r cos(q t + phi) and t**r sin(q t + phi)"
+
+
+# -- what may come in --------------------------------------------------------
+
+
+def as_expression(value: Any, what: str = "the expression") -> Expr:
+    """A SymPy expression from a SymPy expression or a Python number; text is refused unread.
+
+    Raises
+    ------
+    BadTypeError
+        for ``str`` (SymPy would evaluate it as code) and for anything that is no scalar.
+    """
+    if isinstance(value, str):
+        raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is the text {value!r}, "
+                           "which is never evaluated as mathematics.  Build it from sympy.Symbol objects.")
+    if isinstance(value, Expr):
+        return value
+    if isinstance(value, bool) or not isinstance(value, numbers.Number) and not hasattr(value, "_sympy_"):
+        raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is {value!r}, "
+                           f"a {type(value).__name__}.  For a matrix, work on its entries.")
+    return sympy.sympify(value)
+
+
+def as_time(t: Any) -> Symbol:
+    """The independent variable, which must be a SymPy Symbol."""
+    if not isinstance(t, Symbol):
+        raise BadTypeError(f"the independent variable must be a SymPy Symbol, but it is {t!r}.  "
+                           "Use t = sympy.Symbol('t').")
+    return t
+
+
+def check_same_time(expression: Basic, t: Symbol) -> None:
+    """Refuse a second symbol that prints like ``t`` but has other assumptions."""
+    for symbol in expression.free_symbols:
+        if symbol != t and symbol.name == t.name:
+            raise BadInputError(f"the expression contains a symbol {symbol} that is not the variable {t}: they share the "
+                                "name but not the assumptions.  Use one and the same Symbol in both places.")
+
+
+# -- reading -----------------------------------------------------------------
+
+
+def read(value: Any, t: Symbol) -> Modes:
+    """The series of an expression of the family, exactly; ``Float`` is the dyadic rational it stands for.
+
+    Raises
+    ------
+    NotInFamilyError
+        with the part of the expression that is outside.
+    """
+    expression = as_expression(value)
+    check_same_time(expression, t)
+    return _read(expression, t)
+
+
+def read_constant(value: Any, t: Symbol, what: str) -> Modes:
+    """The same for a value that must not depend on ``t``."""
+    expression = as_expression(value, what)
+    if t in expression.free_symbols:
+        raise BadInputError(f"{what} must not depend on {t}, but it is {expression}.  Use another symbol.")
+    return read(expression, t)
+
+
+def _read(e: Expr, t: Symbol) -> Modes:
+    if e.is_Number:
+        return algebra.constant({ONE: rational(e)})
+    if e.is_Symbol:
+        return _read_symbol(e, t)
+    if e.is_Add:
+        return _read_sum(e, t)
+    if e.is_Mul:
+        return _read_product(e, t)
+    if isinstance(e, sin | cos):
+        return _read_trigonometric(e, t)
+    if isinstance(e, exp):
+        return _read_exponential(e, t)
+    if e.is_Pow:
+        return _read_power(e, t)
+    return _read_other(e, t)
+
+
+def _read_symbol(e: Expr, t: Symbol) -> Modes:
+    if e == t:
+        return _time_power(1)
+    if not e.is_commutative:
+        raise NotInFamilyError(f"{e} {_FAMILY}: it does not commute.  Use a commutative Symbol.")
+    return algebra.constant(power(e, 1))
+
+
+def _read_other(e: Expr, t: Symbol) -> Modes:
+    """A constant that is its own generator, or a refusal."""
+    if t in e.free_symbols or t in e.atoms(Symbol):
+        raise NotInFamilyError(f"{e} {_FAMILY} in {t}.  Expand it in such terms first, "
+                               "for example by its Fourier or Taylor series.")
+    if e.is_finite is False or e.has(sympy.zoo, sympy.nan, sympy.oo):
+        raise BadInputError(f"every coefficient must be finite, but {e} is not.  Give a finite value.")
+    if not e.is_commutative or e.has(sympy.Derivative, sympy.Integral):
+        raise NotInFamilyError(f"{e} {_FAMILY}.  Evaluate it first, or put a Symbol in its place.")
+    return algebra.constant(power(e, 1))
+
+
+def _read_sum(e: Expr, t: Symbol) -> Modes:
+    result: Modes = {}
+    for argument in e.args:
+        for (kind, angle, monomial), polynomial in _read(argument, t).items():
+            algebra.add_mode(result, kind, angle, monomial, polynomial)
+    return result
+
+
+def _read_product(e: Expr, t: Symbol) -> Modes:
+    """Numbers, symbols and powers of ``t`` are gathered first; what remains is multiplied."""
+    number, monomial, r = fmpq(1), ONE, 0
+    rest: list[Modes] = []
+    for factor in e.args:
+        base, exponent = factor.as_base_exp() if factor.is_Pow or factor.is_Symbol else (factor, None)
+        if factor.is_Rational:
+            number *= rational(factor)
+        elif base == t and exponent.is_Integer and exponent > 0:
+            r += _checked_power(exponent, e)
+        elif base.is_Symbol and base != t and base.is_commutative and exponent.is_Integer:
+            monomial = multiply_monomials(monomial, ((generator(base), int(exponent)),))[1]
+        else:
+            rest.append(_read(factor, t))
+    if len(rest) == 1 and r and _is_pure_trigonometric(rest[0]):
+        return _times_power(rest[0], r, number, monomial)
+    result = algebra.scaled(_time_power(r), {monomial: number})
+    for factor_modes in rest:
+        result = algebra.product(result, factor_modes)
+    return result
+
+
+def _is_pure_trigonometric(modes: Modes) -> bool:
+    return len(modes) == 1 and all(f.degree() == 0 and angle[0] for (_, angle, _), f in modes.items())
+
+
+def _times_power(modes: Modes, r: int, number: Any, monomial: Monomial) -> Modes:
+    """``number * monomial * t**r`` times one cosine or sine."""
+    (((sine, angle, own), value),) = modes.items()
+    kind, polynomial = algebra.trigonometric(sine == SIN, r)
+    factor, product = multiply_monomials(own, monomial)
+    return {(kind, angle, product): polynomial * (value[0] * number * factor)} if number else {}
+
+
+def _checked_power(exponent: Any, e: Expr) -> int:
+    if exponent > MAXIMAL_POWER:
+        raise BadInputError(f"powers up to {MAXIMAL_POWER} are supported, but {e} has the power {exponent}.  "
+                            "Rescale the problem.")
+    return int(exponent)
+
+
+@lru_cache(maxsize=1024)
+def _time_power(r: int) -> Modes:
+    kind, polynomial = algebra.time_power(r)
+    return {(kind, NO_ANGLE, ONE): polynomial}
+
+
+def _read_power(e: Expr, t: Symbol) -> Modes:
+    base, exponent = e.base, e.exp
+    if t in exponent.free_symbols:
+        return _read_other(e, t)
+    if exponent.is_Integer and exponent >= 0:
+        return _raise(_read(base, t), _checked_power(exponent, e)) if base != t else _time_power(_checked_power(exponent, e))
+    if t in base.free_symbols:
+        return _read_other(e, t)
+    if exponent.is_Integer:
+        return _negative_power(base, int(exponent), e, t)
+    if exponent.is_Rational and base.is_Integer and base > 1:
+        return algebra.constant(_root_of_integer(int(base), exponent))
+    if exponent.is_Rational:
+        return algebra.constant(power(base, _exponent(exponent)))
+    return _read_other(e, t)
+
+
+def _exponent(value: Any) -> Any:
+    return fraction(value)
+
+
+def _root_of_integer(base: int, exponent: Any) -> Polynomial:
+    result: Polynomial = {ONE: fmpq(1)}
+    for prime, multiplicity in sympy.factorint(base).items():
+        result = multiply(result, power(sympy.Integer(prime), _exponent(exponent * multiplicity)))
+    return result
+
+
+def _negative_power(base: Expr, exponent: int, e: Expr, t: Symbol) -> Modes:
+    modes = _read(base, t)
+    if any(angle != NO_ANGLE for _, angle, _ in modes):
+        return algebra.constant(power(base, exponent))
+    inverse = reciprocal({m: f[0] for (_, _, m), f in modes.items()})
+    return _raise(algebra.constant(inverse), -exponent)
+
+
+def _raise(modes: Modes, exponent: int) -> Modes:
+    """A nonnegative power by repeated squaring."""
+    result = algebra.constant({ONE: fmpq(1)})
+    while exponent:
+        if exponent & 1:
+            result = algebra.product(result, modes)
+        exponent >>= 1
+        if exponent:
+            modes = algebra.product(modes, modes)
+    return result
+
+
+@lru_cache(maxsize=1 << 12)
+def _read_trigonometric(e: Expr, t: Symbol) -> Modes:
+    argument = _linear_argument(e.args[0], t)
+    if argument is None:
+        return _read_other(e, t)
+    angle, half_turns = argument
+    return _trigonometric(SIN if isinstance(e, sin) else COS, angle, half_turns, t)
+
+
+def _linear_argument(argument: Expr, t: Symbol) -> tuple[Angle, Any] | None:
+    """``q t + phi + rho pi`` as ``((q, phi), rho)``, or None where the argument is not of this form."""
+    frequency: Polynomial = {}
+    phase: Polynomial = {}
+    for (_, angle, monomial), f in _read(argument, t).items():
+        if angle != NO_ANGLE or f.degree() > 1:
+            return None
+        if f[1]:
+            frequency[monomial] = -f[1]
+        if f[0]:
+            phase[monomial] = f[0]
+    half_turns = phase.pop(((generator(pi), 1),), fmpq(0))
+    return (algebra.linear(frequency), algebra.linear(phase)), half_turns
+
+
+def _trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes:
+    """cos or sin of ``angle + half_turns * pi``."""
+    turned, angle = algebra.orient(angle)
+    result: Modes = {}
+    if (2 * half_turns).q == 1:
+        shift = kind + int((-2 * half_turns).p)  # cos(x - k pi/2): k = 1 is sin
+        other, sign = shift % 2, 1 if shift % 4 < 2 else -1
+        algebra.add_reflected(result, other, turned, angle, ONE, fmpq_poly([sign]))
+        return result
+    fixed = to_sympy_number(half_turns) * pi
+    along, across = _read(cos(fixed), t), _read(sin(fixed), t)
+    same: Modes = {}
+    turned_quarter: Modes = {}
+    algebra.add_reflected(same, kind, turned, angle, ONE, fmpq_poly([1]))
+    algebra.add_reflected(turned_quarter, 1 - kind, turned, angle, ONE, fmpq_poly([-1 if kind == COS else 1]))
+    return algebra.total(algebra.product(along, same), algebra.product(across, turned_quarter))
+
+
+def _read_exponential(e: Expr, t: Symbol) -> Modes:
+    """``exp(c + I x) = exp(c) (cos x + I sin x)`` for real-linear ``x``."""
+    constant_part, imaginary = sympy.expand(e.args[0]).as_independent(I, as_Add=True)
+    if t in constant_part.free_symbols:
+        return _read_other(e, t)
+    x = sympy.expand(imaginary / I)
+    if imaginary == 0 or x.has(I):
+        return _read_other(e, t)
+    wave = algebra.total(_read(cos(x), t), algebra.scaled(_read(sin(x), t), power(I, 1)))
+    return wave if constant_part == 0 else algebra.scaled(wave, power(exp(constant_part), 1))
+
+
+# -- another origin of time --------------------------------------------------
+
+
+def shifted(modes: Modes, by: Polynomial, t: Symbol) -> Modes:
+    """The series at time ``t + by``: ``by`` joins the phases, and powers expand by the binomial theorem."""
+    if not by:
+        return modes
+    powers = [algebra.constant({ONE: fmpq(1)})]
+    step = algebra.total(_time_power(1), algebra.constant(by))
+    result: Modes = {}
+    for (kind, (frequency, phase), monomial), f in modes.items():
+        offset = multiply(algebra.as_polynomial(frequency), by)
+        half_turns = offset.pop(((generator(pi), 1),), fmpq(0))
+        for m, c in algebra.as_polynomial(phase).items():
+            add_term(offset, m, c)
+        angle = (frequency, algebra.linear(offset))
+        for r, c in enumerate(f.coeffs()):
+            if len(powers) <= r:
+                powers.append(algebra.scaled(algebra.product(powers[-1], step), {ONE: fmpq(1, r)}))
+            if c:
+                wave = _trigonometric(kind, angle, half_turns - fmpq(r, 2), t)
+                result = algebra.total(result, algebra.scaled(algebra.product(powers[r], wave), {monomial: c}))
+    return result
+
+
+def as_polynomial(modes: Modes, what: str) -> Polynomial:
+    """A constant series without sines and cosines as a polynomial in the parameters."""
+    for _, angle, monomial in modes:
+        if angle != NO_ANGLE:
+            raise BadInputError(f"{what} must be a polynomial in its symbols, but it contains "
+                                f"{angle_expression(angle, pi) * monomial_expression(monomial)} under a sine or cosine.  "
+                                "Put a Symbol in its place.")
+    return {m: f[0] for (_, _, m), f in modes.items()}
+
+
+# -- writing -----------------------------------------------------------------
+
+_RANK = {name: rank for rank, name in enumerate(ordering_of_classes)}
+_UNKNOWN = len(ordering_of_classes) + 1
+_MUL_RANK = _RANK["Mul"]
+
+
+def order_key(e: Any) -> Any:
+    """A tuple that sorts as SymPy's ``Basic.compare`` does."""
+    if not isinstance(e, Basic):
+        return e
+    name = type(e).__name__
+    rank = _RANK.get(name, _UNKNOWN)
+    content = e._hashable_content()
+    return rank, "" if rank != _UNKNOWN else name, len(content), tuple(map(order_key, content))
+
+
+def write(modes: Modes, t: Symbol) -> Expr:
+    """The series as the canonical, expanded SymPy expression."""
+    writer = _Writer(t)
+    terms: list[tuple[Any, Expr]] = []
+    for (kind, angle, monomial), f in modes.items():
+        writer.add(terms, kind, angle, monomial, f)
+    return _sum(terms)
+
+
+def _sum(terms: list[tuple[Any, Expr]]) -> Expr:
+    """An Add of distinct terms that are canonical already, each with its key."""
+    constants = [e for key, e in terms if key is None]
+    if len(constants) > 1 or any(not e.is_Rational for e in constants):
+        return Add(*(e for _, e in terms))
+    keyed = sorted((item for item in terms if item[0] is not None), key=lambda item: item[0])
+    return Add._from_args(constants + [e for _, e in keyed], is_commutative=True)
+
+
+class _Writer:
+    """Writes modes, remembering factors and their order."""
+
+    def __init__(self, t: Symbol) -> None:
+        self.t = t
+        self.factors: dict[Any, tuple[tuple[tuple[Any, Expr], ...], bool]] = {}
+        self.trigonometric: dict[Any, tuple[int, Expr]] = {}
+
+    def add(self, terms: list[tuple[Any, Expr]], kind: int, angle: Angle, monomial: Monomial, f: Any) -> None:
+        """Append every term of one mode."""
+        numerator, denominator = f.numer().coeffs(), int(f.denom())
+        for r, c in enumerate(numerator):
+            if c:
+                sine, sign = algebra.function_of(kind, r)
+                sign, factors, plain = self.product(monomial, r, sine, angle, sign)
+                value = sympy.Rational(sign * int(c), denominator * factorial(r))
+                terms.append(_term(value, factors) if plain else (None, Mul(value, *(e for _, e in factors))))
+
+    def product(self, monomial: Monomial, r: int, sine: bool, angle: Angle, sign: int) -> Any:
+        """The factors of ``monomial * t**r * cos`` in canonical order."""
+        key = (monomial, r, sine, angle)
+        found = self.factors.get(key)
+        if found is None:
+            found = self.factors[key] = self._product(monomial, r, sine, angle)
+        own, factors, plain = found
+        return sign * own, factors, plain
+
+    def _product(self, monomial: Monomial, r: int, sine: bool, angle: Angle) -> Any:
+        sign, trigonometric = self.function(sine, angle)
+        factors = [expression_of(g) ** sympy.Rational(e) for g, e in monomial]
+        factors += [self.t**r] * (r > 0) + [trigonometric] * (angle != NO_ANGLE)
+        plain = all(e.is_Symbol or e.is_Pow and e.base.is_Symbol or isinstance(e, sin | cos) or e is pi
+                    or e.is_Pow and e.base is pi for e in factors)
+        return sign, tuple(sorted(((order_key(e), e) for e in factors), key=lambda item: item[0])), plain
+
+    def function(self, sine: bool, angle: Angle) -> tuple[int, Expr]:
+        """cos or sin of an angle as SymPy evaluates it, with the sign it may pull out."""
+        key = (sine, angle)
+        if key not in self.trigonometric:
+            sign, e = (sin if sine else cos)(angle_expression(angle, self.t)).as_coeff_Mul()
+            self.trigonometric[key] = (int(sign), e) if e is not sympy.S.One else (1, sign)
+        return self.trigonometric[key]
+
+
+def _term(value: Expr, factors: tuple[tuple[Any, Expr], ...]) -> tuple[Any, Expr]:
+    """``value * factors`` with its key, both built without evaluation."""
+    if not factors:
+        return None, value
+    keys = tuple(key for key, _ in factors)
+    arguments = tuple(e for _, e in factors)
+    if value is not sympy.S.One:
+        keys, arguments = (order_key(value), *keys), (value, *arguments)
+    if len(arguments) == 1:
+        return keys[0], arguments[0]
+    return (_MUL_RANK, "", len(keys), keys), Mul._from_args(arguments, is_commutative=True)
+
+
+def linear_expression(form: Linear) -> Expr:
+    """A linear combination of monomials as SymPy writes it."""
+    return Add(*(sympy.Rational(c) * monomial_expression(m) for m, c in form))
+
+
+def angle_expression(angle: Angle, time: Expr) -> Expr:
+    """``q * time + phi``."""
+    return linear_expression(angle[0]) * time + linear_expression(angle[1])
+
+
+def write_at(modes: Modes, time: Expr) -> Expr:
+    """The series with ``time`` put in place of ``t``, terms evaluated by SymPy one by one."""
+    terms = []
+    for (kind, angle, monomial), f in modes.items():
+        argument = angle_expression(angle, time)
+        functions = (cos(argument), sin(argument))
+        for r, c in enumerate(f.coeffs()):
+            if c:
+                sine, sign = algebra.function_of(kind, r)
+                value = sympy.Rational(sign * int(c.p), int(c.q) * factorial(r))
+                terms.append(value * monomial_expression(monomial) * time**r * functions[sine])
+    return Add(*terms)
+
+
+
+
+def gathered(modes: Modes, t: Symbol) -> Expr:
+    """The series with one coefficient for each ``t**r cos`` and ``t**r sin``."""
+    collected: dict[Any, Polynomial] = {}
+    for (kind, angle, monomial), f in modes.items():
+        for r, c in enumerate(f.coeffs()):
+            sine, sign = algebra.function_of(kind, r)
+            add_term(collected.setdefault((r, sine, angle), {}), monomial, c * sign / factorial(r))
+    terms = []
+    for (r, sine, angle), coefficient in collected.items():
+        function = (sin if sine else cos)(angle_expression(angle, t))
+        terms.append(to_expression(coefficient) * t**r * function)
+    return Add(*terms)

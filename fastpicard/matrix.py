@@ -1,0 +1,187 @@
+r"""Immutable matrices of Poisson series in one time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath
+import numpy
+import sympy
+from sympy import ImmutableMatrix, Symbol
+
+from fastpicard import modes as algebra
+from fastpicard.errors import BadTypeError, ShapeError
+from fastpicard.evaluate import Values, check_digits, evaluate
+from fastpicard.expressions import as_expression, as_time, read, read_constant, shifted, write, write_at
+from fastpicard.modes import Modes
+from fastpicard.ring import Polynomial
+from fastpicard.series import PoissonSeries
+
+Rows = tuple[tuple[Modes, ...], ...]
+
+
+class SeriesMatrix:
+    """A matrix whose entries are exact Poisson series in one time symbol.
+
+    Immutable; ``==`` is mathematical equality; no operation rounds.
+
+    Attributes
+    ----------
+    shape : (rows, columns)
+    t : Symbol                  the time
+    rows : tuple of tuples      the entries as :mod:`fastpicard.modes`
+    """
+
+    __slots__ = ("rows", "t")
+
+    def __init__(self, rows: Rows, t: Symbol) -> None:
+        self.rows, self.t = rows, t
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(rows, columns)."""
+        return len(self.rows), len(self.rows[0])
+
+    def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
+        i, j = index
+        return PoissonSeries.from_modes(self.rows[i][j], self.t)
+
+    def map(self, function: Callable[[Modes], Modes]) -> SeriesMatrix:
+        """Apply a function of series to every entry."""
+        return SeriesMatrix(tuple(tuple(function(modes) for modes in row) for row in self.rows), self.t)
+
+    def __add__(self, other: SeriesMatrix) -> SeriesMatrix:
+        if self.shape != other.shape:
+            raise ShapeError(f"matrices can be added if their shapes agree, but they are {self.shape} and {other.shape}.  "
+                             "Check both shapes.")
+        rows = tuple(tuple(map(algebra.total, left, right)) for left, right in zip(self.rows, other.rows, strict=True))
+        return SeriesMatrix(rows, self.t)
+
+    def __matmul__(self, other: SeriesMatrix) -> SeriesMatrix:
+        if self.shape[1] != other.shape[0]:
+            raise ShapeError(f"matrices can be multiplied if inner sizes agree, but they are {self.shape} and {other.shape}.  "
+                             "Check both shapes.")
+        columns = list(zip(*other.rows, strict=True))
+        return SeriesMatrix(tuple(tuple(_dot(row, column) for column in columns) for row in self.rows), self.t)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, SeriesMatrix):
+            return NotImplemented
+        return self.shape == other.shape and all(
+            self[i, j] == other[i, j] for i in range(self.shape[0]) for j in range(self.shape[1]))
+
+    def __hash__(self) -> int:
+        return hash((self.shape, self.t))
+
+    def diff(self) -> SeriesMatrix:
+        """The derivative of every entry."""
+        return self.map(algebra.derivative)
+
+    def integrate(self) -> SeriesMatrix:
+        """The antiderivative of every entry that is zero at time 0."""
+        return self.map(algebra.antiderivative)
+
+    def shifted(self, by: Polynomial) -> SeriesMatrix:
+        """Every entry at time ``t + by``."""
+        return self.map(lambda modes: shifted(modes, by, self.t)) if by else self
+
+    def as_matrix(self) -> ImmutableMatrix:
+        """The matrix of canonical SymPy expressions."""
+        return ImmutableMatrix([[write(modes, self.t) for modes in row] for row in self.rows])
+
+    def __call__(self, time: Any) -> ImmutableMatrix:
+        """The exact matrix at a time."""
+        value = as_expression(time, "the time")
+        return ImmutableMatrix([[write_at(modes, value) for modes in row] for row in self.rows])
+
+    def evaluate(self, time: Any, values: Values | None = None, digits: int | None = None) -> Any:
+        """The matrix at a time: a float64 array, or an mpmath matrix with ``digits`` correct digits."""
+        numbers = evaluate([modes for row in self.rows for modes in row], time, values, digits)
+        return number_matrix(numbers, self.shape, check_digits(digits))
+
+    def __repr__(self) -> str:
+        return f"<{self.shape[0]} x {self.shape[1]} matrix of Poisson series in {self.t}>"
+
+    def _repr_latex_(self) -> str:
+        return latex_or_summary(self, sum(len(f.coeffs()) for row in self.rows for modes in row for f in modes.values()))
+
+
+def _dot(row: tuple[Modes, ...], column: tuple[Modes, ...]) -> Modes:
+    result: Modes = {}
+    for left, right in zip(row, column, strict=True):
+        if left and right:
+            result = algebra.total(result, algebra.product(left, right))
+    return result
+
+
+def latex_or_summary(matrix: Any, size: int, limit: int = 100) -> str:
+    """LaTeX where a person could read it, the one-line summary otherwise."""
+    if size <= limit:
+        return f"$\\displaystyle {sympy.latex(matrix.as_matrix())}$"
+    return f"$\\displaystyle \\text{{{str(matrix).strip('<>')}}}$"
+
+
+def number_matrix(values: list[Any], shape: tuple[int, int], digits: int | None) -> Any:
+    """Numbers in row order as a float64 array or an mpmath matrix of the given shape."""
+    if digits is None:
+        return numpy.array(values, dtype=float).reshape(shape)
+    rows, columns = shape
+    return mpmath.matrix([values[i * columns:(i + 1) * columns] for i in range(rows)])
+
+
+# -- reading -----------------------------------------------------------------
+
+
+def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
+    """The square matrix ``P(t)`` from a SymPy Matrix, nested lists, or a function of one argument.
+
+    Raises
+    ------
+    ShapeError
+        if it is not square.
+    NotInFamilyError
+        if an entry is no polynomial in ``t`` and sines and cosines of linear functions of ``t``.
+    """
+    t = as_time(t)
+    if callable(P) and not isinstance(P, sympy.MatrixBase):
+        P = P(t)
+    rows = _entries(P, "P")
+    if not rows or any(len(row) != len(rows) for row in rows):
+        shape = (len(rows), len(rows[0]) if rows else 0)
+        raise ShapeError(f"P must be square, but its shape is {shape}.  A system x' = P x has as many equations as unknowns.")
+    return SeriesMatrix(tuple(tuple(_read_entry(e, t, i, j) for j, e in enumerate(row)) for i, row in enumerate(rows)), t)
+
+
+def _entries(matrix: Any, what: str) -> list[list[Any]]:
+    if isinstance(matrix, str):
+        raise BadTypeError(f"{what} must be a SymPy Matrix, but it is the text {matrix!r}, which is never evaluated.  "
+                           "Build it from sympy.Symbol objects.")
+    if isinstance(matrix, sympy.MatrixBase):
+        return list(matrix.tolist())
+    if isinstance(matrix, SeriesMatrix):
+        return list(matrix.as_matrix().tolist())
+    if isinstance(matrix, list | tuple) and all(isinstance(row, list | tuple) for row in matrix):
+        return [list(row) for row in matrix]
+    raise BadTypeError(f"{what} must be a SymPy Matrix, nested lists or a function of the time, but it is {matrix!r}, "
+                       f"a {type(matrix).__name__}.  Use sympy.Matrix.")
+
+
+def _read_entry(entry: Any, t: Symbol, i: int, j: int) -> Modes:
+    try:
+        return read(entry, t)
+    except (BadTypeError, ValueError) as error:
+        raise type(error)(f"P must be a trigonometric polynomial in {t} ([Neves] (6)), but entry P[{i}, {j}] is not: "
+                          f"{error}") from None
+
+
+def read_vector(x0: Any, t: Symbol, size: int) -> tuple[Modes, ...]:
+    """The initial vector ``x0``, free of ``t``, with as many entries as ``P`` has rows."""
+    if isinstance(x0, sympy.MatrixBase):
+        x0 = list(x0) if 1 in x0.shape else None
+    if isinstance(x0, str) or not isinstance(x0, list | tuple):
+        raise BadTypeError(f"x0 must be a list or a column vector, but it is {x0!r}.  Give its {size} components.")
+    if len(x0) != size:
+        raise ShapeError(f"x0 must have the length {size} of P's side, but its length is {len(x0)}: {x0!r}.  "
+                         f"Give {size} components.")
+    return tuple(read_constant(value, t, f"x0[{i}]") for i, value in enumerate(x0))

@@ -1,0 +1,331 @@
+r"""The algebra of modes: Poisson series as plain data.
+
+For an angle ``alpha = q t + phi`` put
+
+    c_r(alpha) = t**r / r! * cos(alpha - r pi/2)
+    s_r(alpha) = t**r / r! * sin(alpha - r pi/2)
+
+A quarter turn for every power of ``t`` makes all signs disappear:
+
+    d/dt c_r = s_{r-1} - q s_r                 d/dt s_r = -(c_{r-1} - q c_r)
+
+so the antiderivative of ``sum f_r c_r`` is ``sum G_r s_r`` with one recurrence
+from the highest power down, ``q G_r = f_r + G_{r+1}`` ([Neves] (8) and (9),
+summed).  Products turn into sums,
+
+    2 c_r(x) c_s(y) = C(r+s, r) [c_{r+s}(x + y) + (-1)**s c_{r+s}(x - y)]
+
+and angles reflect, ``c_r(-x) = (-1)**r c_r(x)``, ``s_r(-x) = -(-1)**r s_r(x)``.
+Even functions of ``t`` are made of ``c`` alone and odd ones of ``s`` alone (where
+phases vanish), so parity costs nothing to keep.
+
+Data: ``Modes`` maps ``(kind, angle, monomial)`` to a polynomial ``f`` in ``x``
+whose coefficient of ``x**r`` multiplies ``c_r`` (kind 0) or ``s_r`` (kind 1).
+An angle is a pair ``(q, phi)`` of linear combinations of monomials.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import factorial, gcd, lcm
+from typing import Any
+
+from flint import fmpq, fmpq_poly
+
+from fastpicard.ring import (
+    ONE,
+    Monomial,
+    Polynomial,
+    add_term,
+    fraction,
+    has_relations,
+    is_zero,
+    multiply,
+    multiply_monomials,
+    reciprocal,
+)
+
+Linear = tuple[tuple[Monomial, Any], ...]  # sorted (monomial, int or Fraction) pairs
+Angle = tuple[Linear, Linear]
+Key = tuple[int, Angle, Monomial]
+Modes = dict[Key, Any]  # Key -> fmpq_poly
+
+COS, SIN = 0, 1
+NO_ANGLE: Angle = ((), ())
+
+_FLIP = fmpq_poly([0, -1])
+
+
+# -- angles ------------------------------------------------------------------
+
+
+def linear(terms: Polynomial) -> Linear:
+    """A polynomial as a canonical linear combination of monomials."""
+    return tuple((m, fraction(terms[m])) for m in sorted(terms))
+
+
+def as_polynomial(form: Linear) -> Polynomial:
+    """A linear combination as a polynomial."""
+    return {m: fmpq(c.numerator, c.denominator) for m, c in form}
+
+
+def _combine(left: Linear, right: Linear, sign: int) -> Linear:
+    if not right:
+        return left
+    total = dict(left)
+    for monomial, value in right:
+        value = total.get(monomial, 0) + sign * value
+        if value:
+            total[monomial] = value if value.denominator != 1 else int(value)
+        else:
+            del total[monomial]
+    return tuple(sorted(total.items()))
+
+
+@lru_cache(maxsize=1 << 16)
+def add_angles(left: Angle, right: Angle, sign: int) -> tuple[bool, Angle]:
+    """``left + sign * right`` with its leading coefficient made positive: ``(was reflected, angle)``."""
+    return orient((_combine(left[0], right[0], sign), _combine(left[1], right[1], sign)))
+
+
+def orient(angle: Angle) -> tuple[bool, Angle]:
+    """Of an angle and its negative, the one that stands for both."""
+    frequency, phase = angle
+    lead = frequency or phase
+    if not lead or lead[-1][1] > 0:
+        return False, angle
+    return True, (tuple((m, -c) for m, c in frequency), tuple((m, -c) for m, c in phase))
+
+
+def common_unit(frequencies: set[Linear]) -> tuple[Monomial, Any] | None:
+    """The largest unit ``(monomial, fmpq)`` of which every frequency is a whole multiple, or None."""
+    if not frequencies:
+        return ONE, fmpq(1)
+    if any(len(frequency) > 1 for frequency in frequencies):
+        return None
+    monomials = {frequency[0][0] for frequency in frequencies}
+    if len(monomials) > 1:
+        return None
+    values = [frequency[0][1] for frequency in frequencies]
+    return monomials.pop(), fmpq(gcd(*(v.numerator for v in values)), lcm(*(v.denominator for v in values)))
+
+
+# -- building ----------------------------------------------------------------
+
+
+def mask(kind: int, polynomial: Any) -> Any:
+    """Drop the modes that vanish identically where the angle is zero: ``c_1, c_3, ...``, ``s_0, s_2, ...``."""
+    reflected = polynomial(_FLIP)
+    return (polynomial + reflected) / 2 if kind == COS else (polynomial - reflected) / 2
+
+
+def add_mode(target: Modes, kind: int, angle: Angle, monomial: Monomial, polynomial: Any) -> None:
+    """Add one mode in place; ``angle`` must be oriented."""
+    if angle == NO_ANGLE:
+        polynomial = mask(kind, polynomial)
+    key = (kind, angle, monomial)
+    old = target.get(key)
+    total = polynomial if old is None else old + polynomial
+    if total:
+        target[key] = total
+    elif old is not None:
+        del target[key]
+
+
+def add_reflected(target: Modes, kind: int, turned: bool, angle: Angle, monomial: Monomial, polynomial: Any) -> None:
+    """Add a mode at an angle that :func:`orient` may have reflected."""
+    if turned:
+        polynomial = polynomial(_FLIP) if kind == COS else -polynomial(_FLIP)
+    add_mode(target, kind, angle, monomial, polynomial)
+
+
+def time_power(r: int) -> tuple[int, Any]:
+    """``t**r`` as ``(kind, polynomial)`` at the angle zero."""
+    sign = (-1) ** ((r + 1) // 2)
+    return r % 2, fmpq_poly([0] * r + [sign * factorial(r)])
+
+
+def trigonometric(sine: bool, r: int) -> tuple[int, Any]:
+    """``t**r cos`` or ``t**r sin`` of any angle as ``(kind, polynomial)``."""
+    kind = (r + sine) % 2
+    quarter_turns = (r + 1) // 2 if kind == SIN else r // 2
+    return kind, fmpq_poly([0] * r + [(-1) ** quarter_turns * factorial(r)])
+
+
+def constant(terms: Polynomial) -> Modes:
+    """A polynomial in the parameters as a series."""
+    return {(COS, NO_ANGLE, m): fmpq_poly([c]) for m, c in terms.items() if c}
+
+
+# -- ring operations ---------------------------------------------------------
+
+
+def add_modes(target: Modes, modes: Modes) -> None:
+    """Add a canonical series in place."""
+    for key, polynomial in modes.items():
+        old = target.get(key)
+        sum_ = polynomial if old is None else old + polynomial
+        if sum_:
+            target[key] = sum_
+        else:
+            del target[key]
+
+
+def total(left: Modes, right: Modes) -> Modes:
+    """The sum of two series."""
+    result = dict(left)
+    add_modes(result, right)
+    return result
+
+
+def scaled(modes: Modes, terms: Polynomial) -> Modes:
+    """A series times a polynomial in the parameters."""
+    result: Modes = {}
+    for (kind, angle, monomial), polynomial in modes.items():
+        for m, c in terms.items():
+            factor, product = multiply_monomials(monomial, m)
+            add_mode(result, kind, angle, product, polynomial * (c * factor))
+    return result
+
+
+def divided_product(f: Any, g: Any) -> Any:
+    """The product where ``x**r`` stands for ``t**r / r!``."""
+    if f.degree() == 0 or g.degree() == 0:
+        return f * g
+    ordinary = _to_ordinary(f) * _to_ordinary(g)
+    return fmpq_poly([c * factorial(r) for r, c in enumerate(ordinary.coeffs())])
+
+
+def _to_ordinary(f: Any) -> Any:
+    return fmpq_poly([c / factorial(r) for r, c in enumerate(f.coeffs())])
+
+
+def product(left: Modes, right: Modes) -> Modes:
+    """The product of two series, by product to sum."""
+    result: Modes = {}
+    for (kind, x, m), f in left.items():
+        for (other, y, n), g in right.items():
+            if kind == COS and other == SIN:
+                _multiply_modes(result, (other, y, n), g, (kind, x, m), f)
+            else:
+                _multiply_modes(result, (kind, x, m), f, (other, y, n), g)
+    return result
+
+
+def _multiply_modes(target: Modes, left: Key, f: Any, right: Key, g: Any) -> None:
+    """cos cos, sin cos and sin sin; the first factor is the sine where only one is."""
+    (kind, x, m), (other, y, n) = left, right
+    factor, monomial = multiply_monomials(m, n)
+    half = factor / 2
+    outer = divided_product(f, g) * half
+    inner = divided_product(f, g(_FLIP)) * half
+    if other == SIN:
+        kind, outer = COS, -outer
+    add_reflected(target, kind, *add_angles(x, y, 1), monomial, outer)
+    add_reflected(target, kind, *add_angles(x, y, -1), monomial, inner)
+
+
+# -- calculus ----------------------------------------------------------------
+
+
+def derivative(modes: Modes) -> Modes:
+    """``d/dt``: ``sum f_r c_r`` becomes ``sum (f_{r+1} - q f_r) s_r``, and ``s`` minus that in ``c``."""
+    result: Modes = {}
+    for (kind, angle, monomial), f in modes.items():
+        sign = 1 if kind == COS else -1
+        add_mode(result, 1 - kind, angle, monomial, f.right_shift(1) * sign)
+        for m, q in as_polynomial(angle[0]).items():
+            factor, scaled_monomial = multiply_monomials(monomial, m)
+            add_mode(result, 1 - kind, angle, scaled_monomial, f * (-sign * q * factor))
+    return result
+
+
+def antiderivative(modes: Modes) -> Modes:
+    """The antiderivative that is zero at ``t = 0``."""
+    result: Modes = {}
+    for (kind, angle, monomial), f in modes.items():
+        sign = 1 if kind == COS else -1
+        for m, g in mode_antiderivative(angle[0], _frozen(f)):
+            factor, product_monomial = multiply_monomials(monomial, m)
+            polynomial = fmpq_poly(list(g)) * (sign * factor)
+            add_mode(result, 1 - kind, angle, product_monomial, polynomial)
+            if angle[0]:
+                turned, start = orient(((), angle[1]))
+                add_reflected(result, 1 - kind, turned, start, product_monomial, fmpq_poly([-polynomial[0]]))
+    return result
+
+
+def _frozen(f: Any) -> tuple[Any, ...]:
+    return tuple(f.coeffs())
+
+
+@lru_cache(maxsize=1 << 14)
+def mode_antiderivative(frequency: Linear, f: tuple[Any, ...]) -> tuple[tuple[Monomial, tuple[Any, ...]], ...]:
+    """Solve ``q G_r = f_r + G_{r+1}`` downwards: pairs (monomial, coefficients) whose sum is ``G``.
+
+    Every integral is computed once and remembered, as the article's recursion does.
+    """
+    if not frequency:
+        return ((ONE, (fmpq(0), *(-c for c in f))),)
+    inverse = reciprocal(as_polynomial(frequency))
+    if list(inverse) == [ONE]:
+        return ((ONE, _recurrence(inverse[ONE], f)),)
+    return _symbolic_recurrence(inverse, f)
+
+
+def _recurrence(inverse: Any, f: tuple[Any, ...]) -> tuple[Any, ...]:
+    g, result = fmpq(0), []
+    for value in reversed(f):
+        g = (value + g) * inverse
+        result.append(g)
+    return tuple(reversed(result))
+
+
+def _symbolic_recurrence(inverse: Polynomial, f: tuple[Any, ...]) -> tuple[tuple[Monomial, tuple[Any, ...]], ...]:
+    """``G = sum_k q**-(k+1) S**k f`` with ``S`` the shift down, where ``1/q`` is no rational number."""
+    collected: dict[Monomial, list[Any]] = {}
+    powers = inverse
+    for k in range(len(f)):
+        for m, c in powers.items():
+            row = collected.setdefault(m, [fmpq(0)] * len(f))
+            for r in range(len(f) - k):
+                row[r] += c * f[r + k]
+        powers = multiply(powers, inverse)
+    return tuple((m, tuple(row)) for m, row in collected.items())
+
+
+# -- equality ----------------------------------------------------------------
+
+
+def vanishes(modes: Modes) -> bool:
+    """Whether a series is zero as a function of time and parameters."""
+    if not modes or not has_relations(m for _, _, m in modes):
+        return not modes
+    collected: dict[tuple[int, Angle, int], Polynomial] = {}
+    for (kind, angle, monomial), f in modes.items():
+        for r, c in enumerate(f.coeffs()):
+            add_term(collected.setdefault((kind, angle, r), {}), monomial, c)
+    return all(map(is_zero, collected.values()))
+
+
+# -- values ------------------------------------------------------------------
+
+
+def function_of(kind: int, r: int) -> tuple[bool, int]:
+    """``c_r`` or ``s_r`` over ``t**r / r!`` as ``(is it a sine, its sign)``."""
+    quarter_turns = r // 2 if kind == COS else (r + 1) // 2
+    return (r + kind) % 2 == 1, -1 if quarter_turns % 2 else 1
+
+
+def frozen(modes: Modes, powers: list[Polynomial]) -> Modes:
+    """A series without frequencies at a fixed time whose powers are given: only constants are left."""
+    result: Modes = {}
+    for (kind, angle, monomial), f in modes.items():
+        for r, c in enumerate(f.coeffs()):
+            if c:
+                sine, sign = function_of(kind, r)
+                for m, value in powers[r].items():
+                    factor, product_monomial = multiply_monomials(monomial, m)
+                    amount = fmpq_poly([c * value * factor * sign / factorial(r)])
+                    add_mode(result, SIN if sine else COS, angle, product_monomial, amount)
+    return result

@@ -1,0 +1,197 @@
+r"""Parameters and exact numbers: Laurent polynomials ``Q[a, 1/a, b, 1/b, ...]``.
+
+A *generator* is anything free of time that is not a rational number: a symbol,
+``pi``, ``sqrt(2)``, ``sqrt(g/l)``, ``1/(b + c)``.  A *monomial* is a product of
+generator powers, kept as sorted pairs ``(generator number, exponent)``; a
+*polynomial* maps monomials to rational numbers.
+
+Two kinds of generator obey a relation that multiplication applies at once:
+primes under a root, ``2**(1/2) * 2**(1/2) = 2``, and ``I * I = -1``.  Products
+of distinct fractional powers of primes are linearly independent over ``Q``
+(Besicovitch), so with symbols and roots alone equal means identical.
+Generators that are themselves sums, such as ``1/(b + c)``, may satisfy further
+relations; :func:`is_zero` settles those by clearing denominators.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import sympy
+from flint import fmpq
+from sympy import Expr
+
+from fastpicard.errors import BadInputError
+
+Exponent = int | Fraction
+Monomial = tuple[tuple[int, Exponent], ...]
+Polynomial = dict[Monomial, Any]  # Monomial -> fmpq
+
+ONE: Monomial = ()
+
+_expressions: list[Expr] = []
+_numbers: dict[Expr, int] = {}
+
+
+def generator(expression: Expr) -> int:
+    """The number of a generator; the same expression has the same number for good."""
+    number = _numbers.get(expression)
+    if number is None:
+        number = _numbers[expression] = len(_expressions)
+        _expressions.append(expression)
+    return number
+
+
+def expression_of(number: int) -> Expr:
+    """The SymPy expression of generator ``number``."""
+    return _expressions[number]
+
+
+def rational(value: Any) -> Any:
+    """An exact SymPy number as ``fmpq``; a Float is the dyadic rational it stands for."""
+    if value.is_Rational:
+        return fmpq(int(value.p), int(value.q))
+    if not value.is_finite:
+        raise BadInputError(f"every number must be finite, but {value} is not.  Give a finite value.")
+    sign, mantissa, exponent, _ = value._mpf_
+    mantissa = -int(mantissa) if sign else int(mantissa)
+    return fmpq(mantissa << max(exponent, 0), 1 << max(-exponent, 0))
+
+
+def fraction(value: Any) -> Exponent:
+    """An ``fmpq`` or exact SymPy rational as ``int`` where it is whole, else ``Fraction``."""
+    p, q = int(value.p), int(value.q)
+    return p if q == 1 else Fraction(p, q)
+
+
+def _normal(number: int, exponent: Exponent) -> tuple[Any, Exponent]:
+    """Apply the generator's relation to one power: ``(rational factor, remaining exponent)``."""
+    base = _expressions[number]
+    if base is sympy.I:
+        turns, rest = divmod(exponent, 2)
+        return fmpq((-1) ** int(turns)), rest
+    if base.is_Integer:
+        whole, rest = divmod(exponent, 1)
+        return fmpq(int(base)) ** int(whole), rest
+    return fmpq(1), exponent
+
+
+@lru_cache(maxsize=1 << 16)
+def multiply_monomials(left: Monomial, right: Monomial) -> tuple[Any, Monomial]:
+    """The product of two monomials as ``(rational factor, monomial)``."""
+    exponents = dict(left)
+    for number, exponent in right:
+        exponents[number] = exponents.get(number, 0) + exponent
+    factor = fmpq(1)
+    product = []
+    for number in sorted(exponents):
+        gained, exponent = _normal(number, exponents[number])
+        factor *= gained
+        if exponent:
+            product.append((number, _whole(exponent)))
+    return factor, tuple(product)
+
+
+def _whole(exponent: Exponent) -> Exponent:
+    return int(exponent) if exponent == int(exponent) else exponent
+
+
+def power(base: Expr, exponent: Exponent) -> Polynomial:
+    """``base**exponent`` for a generator base."""
+    factor, monomial = multiply_monomials(ONE, ((generator(base), exponent),))
+    return {monomial: factor}
+
+
+def add_term(target: Polynomial, monomial: Monomial, value: Any) -> None:
+    """Add ``value * monomial`` in place and drop what cancels."""
+    total = target.get(monomial, 0) + value
+    if total:
+        target[monomial] = total
+    else:
+        target.pop(monomial, None)
+
+
+def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
+    """The product of two polynomials."""
+    product: Polynomial = {}
+    for m, c in left.items():
+        for n, d in right.items():
+            factor, monomial = multiply_monomials(m, n)
+            add_term(product, monomial, c * d * factor)
+    return product
+
+
+def reciprocal(terms: Polynomial) -> Polynomial:
+    """``1 / terms``: a Laurent monomial where it can be, one new generator otherwise.
+
+    Sums of square roots are rationalised, ``1/(1 + sqrt(2)) = sqrt(2) - 1``.
+    """
+    if not terms:
+        raise BadInputError("the reciprocal of 0 does not exist.  Check for a frequency that cancels.")
+    if len(terms) == 1:
+        ((monomial, value),) = terms.items()
+        factor, inverse = multiply_monomials(ONE, tuple((g, -e) for g, e in monomial))
+        return {inverse: factor / value}
+    if all(_is_square_root(g, e) for monomial in terms for g, e in monomial):
+        return _conjugate_reciprocal(terms)
+    lead = terms[max(terms)]
+    primitive = to_expression({m: c / lead for m, c in terms.items()})
+    return {((generator(primitive), -1),): 1 / lead}
+
+
+def _is_square_root(number: int, exponent: Exponent) -> bool:
+    return bool(_expressions[number].is_Integer) and exponent == Fraction(1, 2)
+
+
+def _conjugate_reciprocal(terms: Polynomial) -> Polynomial:
+    """``1/(u + v sqrt(p)) = (u - v sqrt(p)) / (u**2 - p v**2)``, one prime at a time."""
+    primes = {g for monomial in terms for g, _ in monomial}
+    if not primes:
+        return {ONE: 1 / terms[ONE]}
+    prime = max(primes)
+    conjugate = {m: -c if any(g == prime for g, _ in m) else c for m, c in terms.items()}
+    norm = multiply(terms, conjugate)
+    return multiply(conjugate, _conjugate_reciprocal(norm))
+
+
+def to_sympy_number(value: Any) -> Expr:
+    """An ``fmpq`` as a SymPy Rational."""
+    return sympy.Rational(int(value.p), int(value.q))
+
+
+@lru_cache(maxsize=1 << 14)
+def monomial_expression(monomial: Monomial) -> Expr:
+    """A monomial as SymPy writes it."""
+    return sympy.Mul(*(_expressions[g] ** sympy.Rational(e) for g, e in monomial))
+
+
+def to_expression(terms: Polynomial) -> Expr:
+    """A polynomial as a SymPy expression."""
+    return sympy.Add(*(to_sympy_number(c) * monomial_expression(m) for m, c in terms.items()))
+
+
+def symbols_of(monomials: Iterable[Monomial]) -> set[Any]:
+    """The free symbols of all generators that occur."""
+    numbers = {g for monomial in monomials for g, _ in monomial}
+    return set().union(*(_expressions[g].free_symbols for g in numbers))
+
+
+def has_relations(monomials: Iterable[Monomial]) -> bool:
+    """Whether a generator occurs that distinct monomials may relate (a sum, a function of symbols)."""
+    numbers = {g for monomial in monomials for g, _ in monomial}
+    return any(not (e.is_Symbol or e.is_Integer or e in (sympy.pi, sympy.E, sympy.I))
+               for e in map(expression_of, numbers))
+
+
+def is_zero(terms: Polynomial) -> bool:
+    """Whether a polynomial vanishes identically, relations between its generators included."""
+    if not terms or not has_relations(terms):
+        return not terms
+    expression = to_expression(terms)
+    numerator = sympy.fraction(sympy.together(expression))[0].expand()
+    if numerator.is_number:
+        return bool(numerator.equals(0))
+    return bool(numerator == 0 or sympy.radsimp(numerator).expand() == 0)
