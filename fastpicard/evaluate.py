@@ -16,7 +16,6 @@ from __future__ import annotations
 import math
 import numbers
 from collections.abc import Callable, Iterable, Mapping
-from fractions import Fraction
 from typing import Any
 
 import mpmath
@@ -31,6 +30,13 @@ from fastpicard.ring import Monomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
 Values = Mapping[Any, Any]
+
+
+def numpy() -> Any:
+    """NumPy, imported when arrays are first asked for: it takes longer to load than all of this package."""
+    import numpy as module
+
+    return module
 
 
 # -- numbers in --------------------------------------------------------------
@@ -54,13 +60,13 @@ def exact_number(value: Any, what: str) -> Any:
         return fmpq(value)
     if isinstance(value, Expr):
         return _sympy_number(value, what)
-    if isinstance(value, mpmath.mpf):
+    if isinstance(value, mpmath.mpf) and not isinstance(value, mpmath.mp.constant):
         return rational(sympy.Float(_finite(value, mpmath.isfinite(value), what), precision=max(value._mpf_[3], 53)))
-    if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  Give an int, "
-                           "Fraction, SymPy number, mpf, float or arb; text is never evaluated as mathematics.")
-    exact = Fraction(_finite(value, math.isfinite(value), what))
-    return fmpq(exact.numerator, exact.denominator)
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(value, mpmath.mp.constant):
+        raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  "
+                           "Give an int, Fraction, SymPy number, mpf, float or arb; text is never evaluated.")
+    exact = _finite(value, math.isfinite(value), what)
+    return fmpq(int(exact)) if isinstance(exact, numbers.Integral) else fmpq(*map(int, exact.as_integer_ratio()))
 
 
 def _finite(value: Any, finite: bool, what: str) -> Any:
@@ -72,10 +78,10 @@ def _finite(value: Any, finite: bool, what: str) -> Any:
 def _sympy_number(value: Expr, what: str) -> Any:
     if value.is_Rational or value.is_Float:
         return rational(_finite(value, value.is_finite is True, what))
-    if value.free_symbols or not value.is_number:
-        raise BadTypeError(f"{what} must be a number, but it is the expression {value}.  Substitute numbers first.")
-    if value.is_extended_real is not True or not value.is_finite:
-        raise BadInputError(f"{what} must be real and finite, but it is {value}.  Give a finite real number.")
+    if value.free_symbols or not value.is_number or value.is_extended_real is False:
+        raise BadTypeError(f"{what} must be a real number, but it is the expression {value}.  Substitute real numbers.")
+    if value.is_finite is not True:
+        raise BadInputError(f"{what} must be finite, but it is {value}.  Give a finite real number.")
     return value
 
 
@@ -90,8 +96,8 @@ def exact_values(values: Values | None, needed: Iterable[Symbol]) -> dict[Symbol
     given = dict(values or {})
     for key in given:
         if not isinstance(key, Symbol):
-            raise BadTypeError(f"values must map SymPy Symbols to numbers, but a key is {key!r}, a {type(key).__name__}.  "
-                               "Use the Symbol itself: {a: 2}.")
+            raise BadTypeError(f"values must map SymPy Symbols to numbers, but a key is {key!r}, "
+                               f"a {type(key).__name__}.  Use the Symbol itself: {{a: 2}}.")
     missing = sorted((s for s in needed if s not in given), key=str)
     if missing:
         names = ", ".join(map(str, missing))
@@ -111,7 +117,7 @@ _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
     sympy.sin: lambda x: x.sin(), sympy.cos: lambda x: x.cos(), sympy.tan: lambda x: x.tan(),
     sympy.exp: lambda x: x.exp(), sympy.log: lambda x: x.log(), sympy.atan: lambda x: x.atan(),
     sympy.sinh: lambda x: x.sinh(), sympy.cosh: lambda x: x.cosh(), sympy.tanh: lambda x: x.tanh(),
-    sympy.Abs: abs, sympy.asin: lambda x: x.asin(), sympy.acos: lambda x: x.acos(),
+    sympy.Abs: abs, sympy.gamma: lambda x: x.gamma(), sympy.asin: lambda x: x.asin(), sympy.acos: lambda x: x.acos(),
 }
 
 
@@ -176,7 +182,8 @@ class Point:
                 raise BadInputError("the value must be real, but the series contains I.  Evaluate its real and "
                                     "imaginary parts one by one.")
             self.generators[number] = expression_ball(e, self.values)
-        return _power(self.generators[number], arb(fmpq(exponent.numerator, exponent.denominator)), sympy.Rational(exponent))
+        exact = sympy.Rational(exponent)
+        return _power(self.generators[number], arb(rational(exact)), exact)
 
     def linear(self, form: Linear) -> Any:
         """The value of a linear combination."""

@@ -13,20 +13,20 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import mpmath
-import numpy
 import sympy
 from flint import fmpq
 from sympy import Expr, ImmutableMatrix, Symbol, pi
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, NotPeriodicError
-from fastpicard.evaluate import Values, check_digits, evaluate
-from fastpicard.expressions import as_expression, as_polynomial, as_time, read_constant, write
+from fastpicard.evaluate import Values, check_digits, evaluate, numpy
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, read_matrix
 from fastpicard.modes import Modes
 from fastpicard.picard import Increments, check_order, first_increments, identity_columns
+from fastpicard.reading import as_expression, as_polynomial, as_time, read_constant
 from fastpicard.ring import ONE, Polynomial, generator, multiply, to_expression
 from fastpicard.vectorise import vectorise
+from fastpicard.writing import write
 
 
 class FloquetMatrix:
@@ -64,7 +64,7 @@ class FloquetMatrix:
     [[-0.0397796 18.6577238]
      [-0.0535123 -0.0397796]]
     >>> FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 4).trace()
-    2*pi**4*a**2/3 - 4*pi**2*a - 2*pi**2*b**2 + 2
+    4*pi**4*a**2/3 - 4*pi**2*a - 2*pi**2*b**2 + 2
     """
 
     def __init__(self, P: Any, t: Symbol, n: int, period: Any = 2 * pi) -> None:
@@ -74,7 +74,8 @@ class FloquetMatrix:
         self._fill(t, order, as_expression(period), matrix.shape, length,
                    first_increments(matrix, identity_columns(matrix.shape[0]), order))
 
-    def _fill(self, t: Symbol, n: int, period: Expr, shape: tuple[int, int], length: Polynomial, found: Increments) -> None:
+    def _fill(self, t: Symbol, n: int, period: Expr, shape: tuple[int, int], length: Polynomial,
+              found: Increments) -> None:
         self._t, self._n, self._period, self._shape = t, n, period, shape
         self._length, self._increments = length, found
         self._powers: list[Polynomial] = [{ONE: fmpq(1)}]
@@ -138,13 +139,13 @@ class FloquetMatrix:
         return ImmutableMatrix([[self[i, j] for j in range(columns)] for i in range(rows)])
 
     def trace(self) -> Expr:
-        """The exact trace, expanded; ``trace = +-2`` bounds stability for 2 x 2 matrices of determinant 1 ([Neves] (15))."""
+        """The exact trace, expanded; for 2 x 2 and determinant 1, ``trace = +-2`` bounds stability ([Neves] (15))."""
         return write(self._trace(), self._t)
 
     # -- numbers -------------------------------------------------------------
 
     def evaluate(self, values: Values | None = None, digits: int | None = None) -> Any:
-        """The n-th iterate in numbers: a float64 array of shape (m, m), or an mpmath matrix with ``digits`` correct digits.
+        """The n-th iterate in numbers: a float64 array of shape (m, m), or an mpmath matrix with correct ``digits``.
 
         ``values`` maps every parameter to a number (int, Fraction, float as the
         dyadic number it is, mpf, SymPy number, arb).  Computed in balls, so only the last digit is rounded.
@@ -166,12 +167,13 @@ class FloquetMatrix:
         Rounded, not bounded: of a double multiplier about half the digits are right.
         """
         if check_digits(digits) is None:
-            found = numpy.linalg.eigvals(self.evaluate(values)).tolist()
+            found = numpy().linalg.eigvals(self.evaluate(values)).tolist()
         else:
             assert digits is not None
             context = mpmath.mp.clone()
             context.dps = 2 * digits + 10
-            found = context.eig(context.matrix(self.evaluate(values, 2 * digits + 10).tolist()), left=False, right=False)
+            matrix = context.matrix(self.evaluate(values, 2 * digits + 10).tolist())
+            found = context.eig(matrix, left=False, right=False)
             found = [context.mpc(x) for x in found]
         return sorted(found, key=abs, reverse=True)
 
@@ -190,7 +192,7 @@ class FloquetMatrix:
         shape = self._shape
 
         def matrix(*values: Any) -> Any:
-            entries = numpy.stack(function(*values), axis=-1)
+            entries = numpy().stack(function(*values), axis=-1)
             return entries.reshape(entries.shape[:-1] + shape)
 
         return matrix

@@ -18,7 +18,8 @@ from sympy import Expr, Symbol
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.expressions import as_expression, as_time, check_same_time, gathered, read, write, write_at
+from fastpicard.reading import as_expression, as_time, check_same_time, read
+from fastpicard.writing import gathered, write, write_at
 
 
 def gather(expr: Any, t: Symbol) -> Expr:
@@ -106,7 +107,8 @@ def _variable(variable: Any) -> tuple[Symbol, tuple[Expr, Expr] | None]:
     if not isinstance(variable, tuple | list | sympy.Tuple):
         return as_time(variable), None
     if len(variable) != 3:
-        raise BadTypeError(f"the variable must be t or (t, lower, upper), but it is {variable!r}.  Give both limits or none.")
+        raise BadTypeError(f"the variable must be t or (t, lower, upper), but it is {variable!r}.  "
+                           "Give both limits or none.")
     t = as_time(variable[0])
     return t, (_limit(variable[1], t), _limit(variable[2], t))
 

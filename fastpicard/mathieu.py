@@ -45,16 +45,14 @@ import operator
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
-from numbers import Rational
 from typing import Any
 
 import mpmath
-import numpy as np
-import sympy
-from flint import arb, ctx, fmpq, fmpz
+from flint import arb, ctx
 from mpmath.libmp import dps_to_prec, from_rational
 
 from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.evaluate import ball, exact_number
 
 MAX_ROWS = 1_000_000
 _TINY = 1e-300
@@ -69,7 +67,7 @@ def mathieu_a(r: int, q: Any, digits: int = 15) -> Any:
     Parameters
     ----------
     r : int >= 0
-    q : int, Fraction, float, mpf, SymPy number without Floats, python-flint fmpz, fmpq or arb; real, of either sign.
+    q : int, Fraction, float, mpf, SymPy number, python-flint fmpz, fmpq or arb; real, of either sign.
         float and mpf are taken as the exact binary numbers they are.
     digits : int >= 1
 
@@ -118,7 +116,7 @@ def mathieu_a_enclosure(r: int, q: Any, digits: int = 15) -> Any:
     >>> mathieu_a_enclosure(0, 25, digits=12).contains(mathieu_a_enclosure(0, 25, digits=40))
     True
     """
-    return _enclosure(_matrix("a", r), _checked(q), _positive(digits))
+    return _enclosure(_matrix("a", r), exact_number(q, "q"), _positive(digits))
 
 
 def mathieu_b_enclosure(r: int, q: Any, digits: int = 15) -> Any:
@@ -127,7 +125,7 @@ def mathieu_b_enclosure(r: int, q: Any, digits: int = 15) -> Any:
     >>> mathieu_b_enclosure(2, 0)
     4.00000000000000
     """
-    return _enclosure(_matrix("b", r), _checked(q), _positive(digits))
+    return _enclosure(_matrix("b", r), exact_number(q, "q"), _positive(digits))
 
 
 # --- what was asked ---------------------------------------------------------------------------------------------------
@@ -182,62 +180,8 @@ def _positive(digits: Any) -> int:
     return count
 
 
-def _checked(q: Any) -> Any:
-    """The same q, once it is known to be a finite real number of an accepted kind."""
-    if isinstance(q, str):
-        raise BadTypeError(f"q must be a number, got the text {q!r}: text is never evaluated as mathematics.  "
-                           "Pass an int, a fractions.Fraction, a float or an mpmath mpf.")
-    with ctx.workprec(64):
-        if not _ball(q).is_finite():
-            raise BadInputError(f"q must be finite and real, got {q!r}: the equation has no coefficient there.  "
-                                "For |q| growing without bound, see the asymptotic series DLMF 28.8.1.")
-    return q
-
-
 def _is_wide(q: Any) -> bool:
     return isinstance(q, arb) and not q.is_exact()
-
-
-def _ball(q: Any) -> Any:
-    """A ball around q at the present working precision; binary numbers get radius 0."""
-    match q:
-        case bool() | complex() | mpmath.mpc() | mpmath.mp.constant():
-            pass
-        case arb():
-            return q
-        case int() | float() | fmpz() | fmpq() | mpmath.mpf():
-            return arb(q)
-        case Rational():
-            return arb(fmpq(int(q.numerator), int(q.denominator)))
-        case np.floating() if q.itemsize <= 8:
-            return arb(float(q))
-        case sympy.Expr() if not q.free_symbols and not q.has(sympy.Float):
-            return _exact(q)
-    raise BadTypeError(f"q must be a real number, got {q!r} of type {type(q).__name__}.  Pass an int, Fraction, float, "
-                       "mpf, a SymPy number without symbols and Floats, or a python-flint fmpz, fmpq or arb.")
-
-
-def _exact(x: Any) -> Any:
-    """A ball around an exact real SymPy number: rationals, pi, E, sums, products, powers, elementary functions."""
-    match x:
-        case sympy.Rational():
-            return arb(fmpq(x.p, x.q))
-        case sympy.Add():
-            return sum(map(_exact, x.args), arb(0))
-        case sympy.Mul():
-            return math.prod(map(_exact, x.args), start=arb(1))
-        case sympy.Pow() if x.exp.is_Integer:
-            return _exact(x.base) ** int(x.exp)
-        case sympy.Pow():
-            return _exact(x.base) ** _exact(x.exp)
-        case sympy.exp() | sympy.log() | sympy.sin() | sympy.cos() | sympy.tan():
-            return getattr(_exact(x.args[0]), type(x).__name__)()
-    if x in (sympy.nan, sympy.oo, -sympy.oo, sympy.zoo):
-        return arb.nan()
-    if x in (sympy.pi, sympy.E):
-        return arb.pi() if x is sympy.pi else arb.const_e()
-    raise BadTypeError(f"q holds {x}, which is not a real number this function can enclose.  Pass a Fraction, or a "
-                       "python-flint arb that contains q.")
 
 
 # --- the answer -------------------------------------------------------------------------------------------------------
@@ -245,15 +189,15 @@ def _exact(x: Any) -> Any:
 
 def _rounded(name: str, r: Any, q: Any, digits: Any) -> Any:
     """Narrow the ball until both its ends round to one decimal number (Ziv's strategy)."""
-    matrix, q, digits = _matrix(name, r), _checked(q), _positive(digits)
+    matrix, q, digits = _matrix(name, r), exact_number(q, "q"), _positive(digits)
     if q == 0:
         return mpmath.mp.make_mpf(mpmath.libmp.from_int(matrix.r**2))
     for extra in (4, 40, 400, 4000):
-        ball = _enclosure(matrix, q, digits + extra)
-        nearest, other = (_decimal(end, digits) for end in _ends(ball))
+        found = _enclosure(matrix, q, digits + extra)
+        nearest, other = (_decimal(end, digits) for end in _ends(found))
         if nearest == other:
             return mpmath.mp.make_mpf(from_rational(*nearest.as_integer_ratio(), dps_to_prec(digits) + 10, "n"))
-    known = f"{name}_{matrix.r} lies in {ball.str(20)}, which does not fix {digits} digits"
+    known = f"{name}_{matrix.r} lies in {found.str(20)}, which does not fix {digits} digits"
     if _is_wide(q):
         raise BadInputError(f"q is the ball {q!r}; {known}.  Ask for fewer digits, give a narrower q, or take the "
                             f"ball from mathieu_{name}_enclosure.")
@@ -279,15 +223,15 @@ def _enclosure(matrix: _Matrix, parameter: Any, digits: int) -> Any:
     bits = wanted + 8
     while bits < 8 * wanted + 100_000:
         with ctx.workprec(bits + 64):
-            q = _ball(parameter)
+            q = ball(parameter)
             if q.is_zero():
                 return arb(matrix.r**2)
             middle = q.mid()
             spread = 2 * abs(q - middle).upper()
-            ball = _certified(matrix, middle, bits) + arb(0, spread)
-            accurate = ball.rel_accuracy_bits()
+            found = _certified(matrix, middle, bits) + arb(0, spread)
+            accurate = found.rel_accuracy_bits()
             if accurate >= wanted or (_is_wide(parameter) and spread > arb((8, -bits))):
-                return ball
+                return found
         bits += wanted - accurate + 8 if accurate > 0 else bits
     raise BadInputError(f"{matrix.name}_{matrix.r}({parameter!r}) cannot be told from 0 with {bits // 2} bits, so no "
                         "significant digit is known.  If q is an expression equal to 0, pass 0.")

@@ -6,17 +6,17 @@ from collections.abc import Callable
 from typing import Any
 
 import mpmath
-import numpy
 import sympy
 from sympy import ImmutableMatrix, Symbol
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadTypeError, ShapeError
-from fastpicard.evaluate import Values, check_digits, evaluate
-from fastpicard.expressions import as_expression, as_time, read, read_constant, shifted, write, write_at
+from fastpicard.evaluate import Values, check_digits, evaluate, numpy
 from fastpicard.modes import Modes
+from fastpicard.reading import as_expression, as_time, read, read_constant, shifted
 from fastpicard.ring import Polynomial
 from fastpicard.series import PoissonSeries
+from fastpicard.writing import write, write_at
 
 Rows = tuple[tuple[Modes, ...], ...]
 
@@ -53,15 +53,15 @@ class SeriesMatrix:
 
     def __add__(self, other: SeriesMatrix) -> SeriesMatrix:
         if self.shape != other.shape:
-            raise ShapeError(f"matrices can be added if their shapes agree, but they are {self.shape} and {other.shape}.  "
-                             "Check both shapes.")
+            raise ShapeError("matrices can be added if their shapes agree, but they are "
+                             f"{self.shape} and {other.shape}.  Check both shapes.")
         rows = tuple(tuple(map(algebra.total, left, right)) for left, right in zip(self.rows, other.rows, strict=True))
         return SeriesMatrix(rows, self.t)
 
     def __matmul__(self, other: SeriesMatrix) -> SeriesMatrix:
         if self.shape[1] != other.shape[0]:
-            raise ShapeError(f"matrices can be multiplied if inner sizes agree, but they are {self.shape} and {other.shape}.  "
-                             "Check both shapes.")
+            raise ShapeError("matrices can be multiplied if inner sizes agree, but they are "
+                             f"{self.shape} and {other.shape}.  Check both shapes.")
         columns = list(zip(*other.rows, strict=True))
         return SeriesMatrix(tuple(tuple(_dot(row, column) for column in columns) for row in self.rows), self.t)
 
@@ -104,7 +104,8 @@ class SeriesMatrix:
         return f"<{self.shape[0]} x {self.shape[1]} matrix of Poisson series in {self.t}>"
 
     def _repr_latex_(self) -> str:
-        return latex_or_summary(self, sum(len(f.coeffs()) for row in self.rows for modes in row for f in modes.values()))
+        size = sum(f.length() for row in self.rows for modes in row for f in modes.values())
+        return latex_or_summary(self, size)
 
 
 def _dot(row: tuple[Modes, ...], column: tuple[Modes, ...]) -> Modes:
@@ -125,7 +126,7 @@ def latex_or_summary(matrix: Any, size: int, limit: int = 100) -> str:
 def number_matrix(values: list[Any], shape: tuple[int, int], digits: int | None) -> Any:
     """Numbers in row order as a float64 array or an mpmath matrix of the given shape."""
     if digits is None:
-        return numpy.array(values, dtype=float).reshape(shape)
+        return numpy().array(values, dtype=float).reshape(shape)
     rows, columns = shape
     return mpmath.matrix([values[i * columns:(i + 1) * columns] for i in range(rows)])
 
@@ -149,8 +150,10 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
     rows = _entries(P, "P")
     if not rows or any(len(row) != len(rows) for row in rows):
         shape = (len(rows), len(rows[0]) if rows else 0)
-        raise ShapeError(f"P must be square, but its shape is {shape}.  A system x' = P x has as many equations as unknowns.")
-    return SeriesMatrix(tuple(tuple(_read_entry(e, t, i, j) for j, e in enumerate(row)) for i, row in enumerate(rows)), t)
+        raise ShapeError(f"P must be square, but its shape is {shape}.  "
+                         "A system x' = P x has as many equations as unknowns.")
+    entries = tuple(tuple(_read_entry(e, t, i, j) for j, e in enumerate(row)) for i, row in enumerate(rows))
+    return SeriesMatrix(entries, t)
 
 
 def _entries(matrix: Any, what: str) -> list[list[Any]]:

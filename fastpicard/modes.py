@@ -178,6 +178,11 @@ def total(left: Modes, right: Modes) -> Modes:
     return result
 
 
+def negative(modes: Modes) -> Modes:
+    """The series with all signs changed."""
+    return {key: -polynomial for key, polynomial in modes.items()}
+
+
 def scaled(modes: Modes, terms: Polynomial) -> Modes:
     """A series times a polynomial in the parameters."""
     result: Modes = {}

@@ -25,16 +25,17 @@ import sympy
 from flint import fmpq
 from sympy import Expr, ImmutableMatrix, Matrix, Symbol
 
-from fastpicard import increments
 from fastpicard import modes as algebra
+from fastpicard.coordinates import Problem, problem
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values
-from fastpicard.expressions import as_expression, as_polynomial, as_time, read_constant
-from fastpicard.increments import Level, Problem
+from fastpicard.increments import Level, common_multiple, levels
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, read_matrix, read_vector
 from fastpicard.modes import Modes
+from fastpicard.reading import as_expression, as_polynomial, as_time, read_constant
 from fastpicard.ring import ONE, Polynomial
 from fastpicard.series import PoissonSeries
+from fastpicard.unpacking import to_modes, without_frequencies
 
 LARGEST_MULTIPLE = 1 << 1024  # a common multiple of the frequencies beyond this is no saving
 
@@ -79,7 +80,7 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     >>> from sympy.abc import t
     >>> picard(lambda t, x: [x[1], -x[0]], t, [1, 0], 3)
     Matrix([
-    [ 1 - t**2/2],
+    [1 - t**2/2],
     [t**3/6 - t]])
     """
     t = as_time(t)
@@ -123,18 +124,18 @@ class IntegerIncrements:
 
     def to_order(self, n: int) -> IntegerIncrements:
         """The same up to order ``n``; only what is new is computed."""
-        return IntegerIncrements(self.problem, increments.levels(self.problem, n, self.levels))
+        return IntegerIncrements(self.problem, levels(self.problem, n, self.levels))
 
     def entry(self, k: int, i: int, j: int) -> Modes:
         """Entry ``(i, j)`` of ``I_k``."""
         level = self.levels[k]
-        return increments.to_modes(self.problem, level, i, level.columns[j][i])
+        return to_modes(self.problem, level, i, level.columns[j][i])
 
     def whole_turns(self, k: int, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
         level = self.levels[k]
-        packed = increments.without_frequencies(self.problem, level.columns[j][i])
-        return increments.to_modes(self.problem, level, i, packed)
+        packed = without_frequencies(self.problem, level.columns[j][i])
+        return to_modes(self.problem, level, i, packed)
 
 
 @dataclass(frozen=True)
@@ -169,9 +170,9 @@ Increments = IntegerIncrements | SeriesIncrements
 
 def first_increments(P: SeriesMatrix, columns: list[tuple[Modes, ...]], n: int) -> Increments:
     """``I_0 .. I_n`` for the given columns, in integers where the frequencies of ``P`` have a common unit."""
-    problem = increments.problem(P.rows, columns)
-    if problem is not None and increments.common_multiple(problem, n) < LARGEST_MULTIPLE:
-        return IntegerIncrements(problem, ()).to_order(n)
+    integers = problem(P.rows, columns)
+    if integers is not None and common_multiple(integers, n) < LARGEST_MULTIPLE:
+        return IntegerIncrements(integers, ()).to_order(n)
     rows = tuple(zip(*columns, strict=True))
     return SeriesIncrements(P, (SeriesMatrix(rows, P.t),)).to_order(n)
 

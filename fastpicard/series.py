@@ -14,9 +14,10 @@ from sympy import Expr, Symbol
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, evaluate, free_symbols
-from fastpicard.expressions import as_expression, as_time, check_same_time, read, read_constant, write, write_at
 from fastpicard.modes import Modes
-from fastpicard.ring import ONE, rational
+from fastpicard.reading import as_expression, as_time, check_same_time, read, read_constant
+from fastpicard.ring import ONE, has_relations, rational
+from fastpicard.writing import write, write_at
 
 SHORT = 12  # terms printed before the rest is counted
 
@@ -120,14 +121,14 @@ class PoissonSeries:
         return NotImplemented if modes is None else self._make(algebra.total(self._modes, modes))
 
     def __neg__(self) -> PoissonSeries:
-        return self.scale(-1)
+        return self._make(algebra.negative(self._modes))
 
     def __sub__(self, other: Any) -> PoissonSeries:
         modes = self._other(other)
-        return NotImplemented if modes is None else self + self._make(modes).scale(-1)
+        return NotImplemented if modes is None else self._make(algebra.total(self._modes, algebra.negative(modes)))
 
     def __rsub__(self, other: Any) -> PoissonSeries:
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> PoissonSeries:
         modes = self._other(other)
@@ -140,8 +141,8 @@ class PoissonSeries:
         if isinstance(exponent, bool) or not isinstance(exponent, int):
             raise BadTypeError(f"the exponent must be an int, but it is {exponent!r}.  Use an integer from 0 up.")
         if exponent < 0:
-            raise BadInputError(f"a power of a series is a series for exponents from 0 up, but the exponent is {exponent}.  "
-                                "Negative powers leave the family.")
+            raise BadInputError("a power of a series is a series for exponents from 0 up, but the exponent is "
+                                f"{exponent}.  Negative powers leave the family.")
         result = self._make(algebra.constant({ONE: rational(sympy.Integer(1))}))
         for _ in range(exponent):
             result = result * self
@@ -161,7 +162,7 @@ class PoissonSeries:
     def __hash__(self) -> int:
         """Equal series have equal hashes: with relations between parameters, the time alone is safe."""
         if self._hash is None:
-            related = algebra.has_relations(m for _, _, m in self._modes)
+            related = has_relations(m for _, _, m in self._modes)
             self._hash = hash(self._t if related else (self._t, frozenset((k, str(f)) for k, f in self._modes.items())))
         return self._hash
 

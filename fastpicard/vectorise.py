@@ -13,13 +13,12 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-import numpy
 import sympy
 from flint import arb
 from sympy import Symbol
 
 from fastpicard.errors import BadTypeError, MissingParameterError
-from fastpicard.evaluate import Point, free_symbols, refine, to_number
+from fastpicard.evaluate import Point, free_symbols, numpy, refine, to_number
 from fastpicard.modes import COS, NO_ANGLE, Angle, Linear, Modes
 from fastpicard.ring import expression_of, monomial_expression, symbols_of
 
@@ -38,15 +37,16 @@ def vectorise(constants: list[Modes], params: Sequence[Symbol]) -> Callable[...,
     names = _checked(params)
     missing = sorted(set().union(*map(free_symbols, constants)) - set(names), key=str)
     if missing:
-        raise MissingParameterError(f"every parameter must be an argument, but {', '.join(map(str, missing))} is missing "
-                                    f"among {list(names)}.  Add it to the list.")
+        absent = ", ".join(map(str, missing))
+        raise MissingParameterError(f"every parameter must be an argument, but {absent} is missing among "
+                                    f"{list(names)}.  Add it to the list.")
     polynomials = [_Polynomial(modes, names) for modes in constants]
 
     def function(*values: Array) -> list[Array]:
         if len(values) != len(names):
-            raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were given.  "
-                               "Give one number or array for each.")
-        arrays = numpy.broadcast_arrays(*(numpy.asarray(value, dtype=float) for value in values)) if values else []
+            raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were "
+                               "given.  Give one number or array for each.")
+        arrays = list(numpy().broadcast_arrays(*(numpy().asarray(value, dtype=float) for value in values)))
         return [polynomial(arrays) for polynomial in polynomials]
 
     return function
@@ -82,12 +82,12 @@ class _Polynomial:
     def __call__(self, arrays: list[Array]) -> Array:
         shape = arrays[0].shape if arrays else ()
         variables = [self.functions[g](arrays) for g in self.variables]
-        total = numpy.zeros(shape)
+        total = numpy().zeros(shape)
         for (kind, angle), terms in self.waves.items():
             value = horner(terms, variables)
             if angle != NO_ANGLE:
                 phase = _linear(angle[1], self.names)(arrays)
-                value = value * (numpy.cos(phase) if kind == COS else numpy.sin(phase))
+                value = value * (numpy().cos(phase) if kind == COS else numpy().sin(phase))
             total = total + value
         return total
 
@@ -118,7 +118,7 @@ def _power(x: Array, e: Any) -> Array:
         return 1.0
     if e == 1:
         return x
-    return numpy.power(x, float(e)) if isinstance(e, Fraction) else x ** int(e)
+    return numpy().power(x, float(e)) if isinstance(e, Fraction) else x ** int(e)
 
 
 def _generator_function(number: int, names: tuple[Symbol, ...]) -> Callable[[list[Array]], Array]:

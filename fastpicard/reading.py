@@ -1,35 +1,30 @@
-r"""SymPy <-> series: the only reader and the only writer of SymPy trees.
+r"""SymPy -> series: the only reader of SymPy trees.
 
 Reading accepts exactly the family F of [Neves], section 3, with symbolic
 coefficients: sums and products of constants, ``t**r``, ``sin`` and ``cos`` of
 ``q t + phi`` and ``exp(I (q t + phi))``.  Everything else is refused by name.
-
-Writing builds the expression SymPy itself would have built, argument by
-argument in canonical order, so that nothing is sorted or evaluated twice: the
-order of SymPy's ``Basic.compare`` is computed once per factor as a plain tuple.
+Every constant that is no polynomial in something simpler is its own generator,
+so ``sqrt(2)``, ``g/l`` and ``1/(b + c)`` come back as what they were.
 """
 
 from __future__ import annotations
 
 import numbers
 from functools import lru_cache
-from math import factorial
 from typing import Any
 
 import sympy
 from flint import fmpq, fmpq_poly
-from sympy import Add, Basic, Expr, I, Mul, Pow, Symbol, cos, exp, pi, sin
-from sympy.core.basic import ordering_of_classes
+from sympy import Basic, Expr, I, Symbol, cos, exp, pi, sin
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError, NotInFamilyError
-from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes
+from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Modes
 from fastpicard.ring import (
     ONE,
     Monomial,
     Polynomial,
     add_term,
-    expression_of,
     fraction,
     generator,
     monomial_expression,
@@ -38,9 +33,9 @@ from fastpicard.ring import (
     power,
     rational,
     reciprocal,
-    to_expression,
     to_sympy_number,
 )
+from fastpicard.writing import angle_expression
 
 MAXIMAL_POWER = 10_000
 _FAMILY = "is not in the family of sums of t**r cos(q t + phi) and t**r sin(q t + phi)"
@@ -80,8 +75,8 @@ def check_same_time(expression: Basic, t: Symbol) -> None:
     """Refuse a second symbol that prints like ``t`` but has other assumptions."""
     for symbol in expression.free_symbols:
         if symbol != t and symbol.name == t.name:
-            raise BadInputError(f"the expression contains a symbol {symbol} that is not the variable {t}: they share the "
-                                "name but not the assumptions.  Use one and the same Symbol in both places.")
+            raise BadInputError(f"the expression contains a symbol {symbol} that is not the variable {t}: they share "
+                                "the name but not the assumptions.  Use one and the same Symbol in both places.")
 
 
 # -- reading -----------------------------------------------------------------
@@ -159,7 +154,7 @@ def _read_product(e: Expr, t: Symbol) -> Modes:
     number, monomial, r = fmpq(1), ONE, 0
     rest: list[Modes] = []
     for factor in e.args:
-        base, exponent = factor.as_base_exp() if factor.is_Pow or factor.is_Symbol else (factor, None)
+        base, exponent = factor.as_base_exp() if factor.is_Pow or factor.is_Symbol else (factor, sympy.S.One)
         if factor.is_Rational:
             number *= rational(factor)
         elif base == t and exponent.is_Integer and exponent > 0:
@@ -206,7 +201,8 @@ def _read_power(e: Expr, t: Symbol) -> Modes:
     if t in exponent.free_symbols:
         return _read_other(e, t)
     if exponent.is_Integer and exponent >= 0:
-        return _raise(_read(base, t), _checked_power(exponent, e)) if base != t else _time_power(_checked_power(exponent, e))
+        whole = _checked_power(exponent, e)
+        return _time_power(whole) if base == t else _raise(_read(base, t), whole)
     if t in base.free_symbols:
         return _read_other(e, t)
     if exponent.is_Integer:
@@ -332,139 +328,7 @@ def as_polynomial(modes: Modes, what: str) -> Polynomial:
     """A constant series without sines and cosines as a polynomial in the parameters."""
     for _, angle, monomial in modes:
         if angle != NO_ANGLE:
-            raise BadInputError(f"{what} must be a polynomial in its symbols, but it contains "
-                                f"{angle_expression(angle, pi) * monomial_expression(monomial)} under a sine or cosine.  "
-                                "Put a Symbol in its place.")
+            inside = angle_expression(angle, pi) * monomial_expression(monomial)
+            raise BadInputError(f"{what} must be a polynomial in its symbols, but it contains {inside} under a sine "
+                                "or cosine.  Put a Symbol in its place.")
     return {m: f[0] for (_, _, m), f in modes.items()}
-
-
-# -- writing -----------------------------------------------------------------
-
-_RANK = {name: rank for rank, name in enumerate(ordering_of_classes)}
-_UNKNOWN = len(ordering_of_classes) + 1
-_MUL_RANK = _RANK["Mul"]
-
-
-def order_key(e: Any) -> Any:
-    """A tuple that sorts as SymPy's ``Basic.compare`` does."""
-    if not isinstance(e, Basic):
-        return e
-    name = type(e).__name__
-    rank = _RANK.get(name, _UNKNOWN)
-    content = e._hashable_content()
-    return rank, "" if rank != _UNKNOWN else name, len(content), tuple(map(order_key, content))
-
-
-def write(modes: Modes, t: Symbol) -> Expr:
-    """The series as the canonical, expanded SymPy expression."""
-    writer = _Writer(t)
-    terms: list[tuple[Any, Expr]] = []
-    for (kind, angle, monomial), f in modes.items():
-        writer.add(terms, kind, angle, monomial, f)
-    return _sum(terms)
-
-
-def _sum(terms: list[tuple[Any, Expr]]) -> Expr:
-    """An Add of distinct terms that are canonical already, each with its key."""
-    constants = [e for key, e in terms if key is None]
-    if len(constants) > 1 or any(not e.is_Rational for e in constants):
-        return Add(*(e for _, e in terms))
-    keyed = sorted((item for item in terms if item[0] is not None), key=lambda item: item[0])
-    return Add._from_args(constants + [e for _, e in keyed], is_commutative=True)
-
-
-class _Writer:
-    """Writes modes, remembering factors and their order."""
-
-    def __init__(self, t: Symbol) -> None:
-        self.t = t
-        self.factors: dict[Any, tuple[tuple[tuple[Any, Expr], ...], bool]] = {}
-        self.trigonometric: dict[Any, tuple[int, Expr]] = {}
-
-    def add(self, terms: list[tuple[Any, Expr]], kind: int, angle: Angle, monomial: Monomial, f: Any) -> None:
-        """Append every term of one mode."""
-        numerator, denominator = f.numer().coeffs(), int(f.denom())
-        for r, c in enumerate(numerator):
-            if c:
-                sine, sign = algebra.function_of(kind, r)
-                sign, factors, plain = self.product(monomial, r, sine, angle, sign)
-                value = sympy.Rational(sign * int(c), denominator * factorial(r))
-                terms.append(_term(value, factors) if plain else (None, Mul(value, *(e for _, e in factors))))
-
-    def product(self, monomial: Monomial, r: int, sine: bool, angle: Angle, sign: int) -> Any:
-        """The factors of ``monomial * t**r * cos`` in canonical order."""
-        key = (monomial, r, sine, angle)
-        found = self.factors.get(key)
-        if found is None:
-            found = self.factors[key] = self._product(monomial, r, sine, angle)
-        own, factors, plain = found
-        return sign * own, factors, plain
-
-    def _product(self, monomial: Monomial, r: int, sine: bool, angle: Angle) -> Any:
-        sign, trigonometric = self.function(sine, angle)
-        factors = [expression_of(g) ** sympy.Rational(e) for g, e in monomial]
-        factors += [self.t**r] * (r > 0) + [trigonometric] * (angle != NO_ANGLE)
-        plain = all(e.is_Symbol or e.is_Pow and e.base.is_Symbol or isinstance(e, sin | cos) or e is pi
-                    or e.is_Pow and e.base is pi for e in factors)
-        return sign, tuple(sorted(((order_key(e), e) for e in factors), key=lambda item: item[0])), plain
-
-    def function(self, sine: bool, angle: Angle) -> tuple[int, Expr]:
-        """cos or sin of an angle as SymPy evaluates it, with the sign it may pull out."""
-        key = (sine, angle)
-        if key not in self.trigonometric:
-            sign, e = (sin if sine else cos)(angle_expression(angle, self.t)).as_coeff_Mul()
-            self.trigonometric[key] = (int(sign), e) if e is not sympy.S.One else (1, sign)
-        return self.trigonometric[key]
-
-
-def _term(value: Expr, factors: tuple[tuple[Any, Expr], ...]) -> tuple[Any, Expr]:
-    """``value * factors`` with its key, both built without evaluation."""
-    if not factors:
-        return None, value
-    keys = tuple(key for key, _ in factors)
-    arguments = tuple(e for _, e in factors)
-    if value is not sympy.S.One:
-        keys, arguments = (order_key(value), *keys), (value, *arguments)
-    if len(arguments) == 1:
-        return keys[0], arguments[0]
-    return (_MUL_RANK, "", len(keys), keys), Mul._from_args(arguments, is_commutative=True)
-
-
-def linear_expression(form: Linear) -> Expr:
-    """A linear combination of monomials as SymPy writes it."""
-    return Add(*(sympy.Rational(c) * monomial_expression(m) for m, c in form))
-
-
-def angle_expression(angle: Angle, time: Expr) -> Expr:
-    """``q * time + phi``."""
-    return linear_expression(angle[0]) * time + linear_expression(angle[1])
-
-
-def write_at(modes: Modes, time: Expr) -> Expr:
-    """The series with ``time`` put in place of ``t``, terms evaluated by SymPy one by one."""
-    terms = []
-    for (kind, angle, monomial), f in modes.items():
-        argument = angle_expression(angle, time)
-        functions = (cos(argument), sin(argument))
-        for r, c in enumerate(f.coeffs()):
-            if c:
-                sine, sign = algebra.function_of(kind, r)
-                value = sympy.Rational(sign * int(c.p), int(c.q) * factorial(r))
-                terms.append(value * monomial_expression(monomial) * time**r * functions[sine])
-    return Add(*terms)
-
-
-
-
-def gathered(modes: Modes, t: Symbol) -> Expr:
-    """The series with one coefficient for each ``t**r cos`` and ``t**r sin``."""
-    collected: dict[Any, Polynomial] = {}
-    for (kind, angle, monomial), f in modes.items():
-        for r, c in enumerate(f.coeffs()):
-            sine, sign = algebra.function_of(kind, r)
-            add_term(collected.setdefault((r, sine, angle), {}), monomial, c * sign / factorial(r))
-    terms = []
-    for (r, sine, angle), coefficient in collected.items():
-        function = (sin if sine else cos)(angle_expression(angle, t))
-        terms.append(to_expression(coefficient) * t**r * function)
-    return Add(*terms)
