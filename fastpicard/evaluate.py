@@ -85,15 +85,23 @@ def _sympy_number(value: Expr, what: str) -> Any:
     return value
 
 
-def exact_values(values: Values | None, needed: Iterable[Symbol]) -> dict[Symbol, Any]:
+def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol) -> dict[Symbol, Any]:
     """The values of the parameters that occur, exactly.
 
     Raises
     ------
     MissingParameterError
         if one of them has none.
+    BadInputError
+        if the time ``t`` is among them.
     """
-    given = dict(values or {})
+    if values is not None and not isinstance(values, Mapping):
+        raise BadTypeError(f"values must map SymPy Symbols to numbers, but they are {values!r}, "
+                           f"a {type(values).__name__}.  Use a dictionary: {{a: 2}}.")
+    given = values or {}
+    if t in given:
+        raise BadInputError(f"the time {t} is no parameter, but the values give it: {given}.  "
+                            "The time is an argument of its own.")
     for key in given:
         if not isinstance(key, Symbol):
             raise BadTypeError(f"values must map SymPy Symbols to numbers, but a key is {key!r}, "
@@ -103,7 +111,8 @@ def exact_values(values: Values | None, needed: Iterable[Symbol]) -> dict[Symbol
         names = ", ".join(map(str, missing))
         raise MissingParameterError(f"every parameter needs a value, but {names} has none among {given}.  "
                                     f"Add {names} to the values.")
-    return {s: exact_number(given[s], f"the value of {s}") for s in needed}
+    exact = {s: exact_number(value, f"the value of {s}") for s, value in given.items()}
+    return {s: exact[s] for s in needed}
 
 
 def ball(value: Any) -> Any:
@@ -264,7 +273,7 @@ def to_number(x: Any, digits: int | None) -> Any:
     return mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), libmp.dps_to_prec(digits), "n"))
 
 
-def evaluate(series: list[Modes], time: Any, values: Values | None, digits: int | None) -> list[Any]:
+def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, digits: int | None) -> list[Any]:
     """The values of several series at one time and one set of parameters, as numbers.
 
     Raises
@@ -273,7 +282,7 @@ def evaluate(series: list[Modes], time: Any, values: Values | None, digits: int 
         if a parameter that occurs has no value.
     """
     needed = set().union(*map(free_symbols, series)) if series else set()
-    exact = exact_values(values, needed)
+    exact = exact_values(values, needed, t)
     when = exact_number(time, "the time")
     digits = check_digits(digits)
 

@@ -23,7 +23,7 @@ from fastpicard.evaluate import Values, check_digits, evaluate, numpy
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, read_matrix
 from fastpicard.modes import Modes
 from fastpicard.picard import Increments, check_order, first_increments, identity_columns
-from fastpicard.reading import as_expression, as_polynomial, as_time, read_constant
+from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, read_constant
 from fastpicard.ring import ONE, Polynomial, generator, multiply, to_expression
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
@@ -155,11 +155,11 @@ class FloquetMatrix:
         MissingParameterError
             if a parameter has no value.
         """
-        return number_matrix(evaluate(self._all(), 0, values, digits), self._shape, check_digits(digits))
+        return number_matrix(evaluate(self._all(), self._t, 0, values, digits), self._shape, check_digits(digits))
 
     def trace_at(self, values: Values | None = None, digits: int | None = None) -> Any:
         """The trace of the n-th iterate, float or mpf, every digit asked for correct."""
-        return evaluate([self._trace()], 0, values, digits)[0]
+        return evaluate([self._trace()], self._t, 0, values, digits)[0]
 
     def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
         """The eigenvalues of the n-th iterate, complex numbers sorted by absolute value, largest first.
@@ -188,7 +188,7 @@ class FloquetMatrix:
         MissingParameterError
             if a parameter is not among ``params``.
         """
-        function = vectorise(self._all(), params)
+        function = vectorise(self._all(), params, self._t)
         shape = self._shape
 
         def matrix(*values: Any) -> Any:
@@ -199,7 +199,7 @@ class FloquetMatrix:
 
     def lambdify_trace(self, params: Sequence[Symbol]) -> Callable[..., Any]:
         """A NumPy function for the trace, as :meth:`lambdify` for the matrix."""
-        function = vectorise([self._trace()], params)
+        function = vectorise([self._trace()], params, self._t)
         return lambda *values: function(*values)[0]
 
     # -- printing ------------------------------------------------------------
@@ -218,12 +218,12 @@ class FloquetMatrix:
 
 def check_period(matrix: SeriesMatrix, period: Any) -> Polynomial:
     """The period as a polynomial in its symbols, if every entry of the matrix repeats with it."""
-    expression = as_expression(period, "the period")
+    expression = as_finite(period, "the period")
     if expression.has(sympy.Float):
         raise BadInputError(f"the period must be exact, but {expression} is a float: its cosines are not exactly 1.  "
                             "Use an exact period such as 2*pi.")
-    if expression.is_positive is False or expression.is_finite is False:
-        raise BadInputError(f"the period must be positive and finite, but it is {expression}.  Use 2*pi, say.")
+    if expression.is_positive is False:
+        raise BadInputError(f"the period must be positive, but it is {expression}.  Use 2*pi, say.")
     length = as_polynomial(read_constant(expression, matrix.t, "the period"), "the period")
     for i, row in enumerate(matrix.rows):
         for j, modes in enumerate(row):
@@ -239,7 +239,7 @@ def _check_mode(matrix: SeriesMatrix, place: tuple[int, int], mode: Modes, lengt
         return
     i, j = place
     if f.degree() > 0:
-        evidence, remedy = "which grows with the time", "Only trigonometric polynomials repeat."
+        evidence, remedy = "which is not periodic but grows with the time", "Only trigonometric polynomials repeat."
     else:
         evidence = f"which makes {to_expression(turns)} of a turn in that time"
         remedy = _remedy(matrix)

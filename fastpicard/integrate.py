@@ -17,8 +17,8 @@ import sympy
 from sympy import Expr, Symbol
 
 from fastpicard import modes as algebra
-from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.reading import as_expression, as_time, check_same_time, read
+from fastpicard.errors import BadTypeError
+from fastpicard.reading import as_finite, as_time, check_same_time, read
 from fastpicard.writing import gathered, write, write_at
 
 
@@ -114,9 +114,6 @@ def _variable(variable: Any) -> tuple[Symbol, tuple[Expr, Expr] | None]:
 
 
 def _limit(value: Any, t: Symbol) -> Expr:
-    limit = as_expression(value, "a limit")
-    if limit.is_finite is False or limit.has(sympy.nan, sympy.zoo, sympy.oo):
-        raise BadInputError(f"both limits must be finite, but one is {limit}: the integral does not converge.  "
-                            "Give finite limits.")
+    limit = as_finite(value, "a limit of the integral")
     check_same_time(limit, t)
     return limit

@@ -13,7 +13,7 @@ from fastpicard import modes as algebra
 from fastpicard.errors import BadTypeError, ShapeError
 from fastpicard.evaluate import Values, check_digits, evaluate, numpy
 from fastpicard.modes import Modes
-from fastpicard.reading import as_expression, as_time, read, read_constant, shifted
+from fastpicard.reading import as_finite, as_time, read, read_constant, shifted
 from fastpicard.ring import Polynomial
 from fastpicard.series import PoissonSeries
 from fastpicard.writing import write, write_at
@@ -92,12 +92,12 @@ class SeriesMatrix:
 
     def __call__(self, time: Any) -> ImmutableMatrix:
         """The exact matrix at a time."""
-        value = as_expression(time, "the time")
+        value = as_finite(time, "the time")
         return ImmutableMatrix([[write_at(modes, value) for modes in row] for row in self.rows])
 
     def evaluate(self, time: Any, values: Values | None = None, digits: int | None = None) -> Any:
         """The matrix at a time: a float64 array, or an mpmath matrix with ``digits`` correct digits."""
-        numbers = evaluate([modes for row in self.rows for modes in row], time, values, digits)
+        numbers = evaluate([modes for row in self.rows for modes in row], self.t, time, values, digits)
         return number_matrix(numbers, self.shape, check_digits(digits))
 
     def __repr__(self) -> str:

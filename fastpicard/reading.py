@@ -38,6 +38,7 @@ from fastpicard.ring import (
 from fastpicard.writing import angle_expression
 
 MAXIMAL_POWER = 10_000
+_INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo, sympy.AccumBounds)
 _FAMILY = "is not in the family of sums of t**r cos(q t + phi) and t**r sin(q t + phi)"
 
 
@@ -55,12 +56,21 @@ def as_expression(value: Any, what: str = "the expression") -> Expr:
     if isinstance(value, str):
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is the text {value!r}, "
                            "which is never evaluated as mathematics.  Build it from sympy.Symbol objects.")
-    if isinstance(value, Expr):
+    if isinstance(value, Expr) and not isinstance(value, sympy.Lambda):
         return value
-    if isinstance(value, bool) or not isinstance(value, numbers.Number) and not hasattr(value, "_sympy_"):
+    scalar = isinstance(value, numbers.Number) or hasattr(value, "_sympy_")
+    if isinstance(value, bool | sympy.Lambda) or not scalar:
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is {value!r}, "
                            f"a {type(value).__name__}.  For a matrix, work on its entries.")
     return sympy.sympify(value)
+
+
+def as_finite(value: Any, what: str) -> Expr:
+    """The same for a value that must be finite."""
+    expression = as_expression(value, what)
+    if expression.is_finite is False or expression.has(*_INFINITE):
+        raise BadInputError(f"{what} must be finite, but it is {expression}.  Give a finite value.")
+    return expression
 
 
 def as_time(t: Any) -> Symbol:
@@ -134,7 +144,7 @@ def _read_other(e: Expr, t: Symbol) -> Modes:
     if t in e.free_symbols or t in e.atoms(Symbol):
         raise NotInFamilyError(f"{e} {_FAMILY} in {t}.  Expand it in such terms first, "
                                "for example by its Fourier or Taylor series.")
-    if e.is_finite is False or e.has(sympy.zoo, sympy.nan, sympy.oo):
+    if e.is_finite is False or e.has(*_INFINITE):
         raise BadInputError(f"every coefficient must be finite, but {e} is not.  Give a finite value.")
     if not e.is_commutative or e.has(sympy.Derivative, sympy.Integral):
         raise NotInFamilyError(f"{e} {_FAMILY}.  Evaluate it first, or put a Symbol in its place.")

@@ -15,7 +15,7 @@ from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, evaluate, free_symbols
 from fastpicard.modes import Modes
-from fastpicard.reading import as_expression, as_time, check_same_time, read, read_constant
+from fastpicard.reading import as_expression, as_finite, as_time, check_same_time, read, read_constant
 from fastpicard.ring import ONE, has_relations, rational
 from fastpicard.writing import write, write_at
 
@@ -183,7 +183,7 @@ class PoissonSeries:
 
     def __call__(self, time: Any) -> Expr:
         """The exact value at a time, a SymPy expression in the parameters."""
-        value = as_expression(time, "the time")
+        value = as_finite(time, "the time")
         check_same_time(value, self._t)
         return write_at(self._modes, value)
 
@@ -197,7 +197,7 @@ class PoissonSeries:
         MissingParameterError
             if a parameter has no value.
         """
-        return evaluate([self._modes], time, values, digits)[0]
+        return evaluate([self._modes], self._t, time, values, digits)[0]
 
     # -- printing ------------------------------------------------------------
 

@@ -9,7 +9,8 @@ one period the loss is at most about ``2.7 sqrt(|a| + |b|)`` digits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import numbers
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -17,7 +18,7 @@ import sympy
 from flint import arb
 from sympy import Symbol
 
-from fastpicard.errors import BadTypeError, MissingParameterError
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.evaluate import Point, free_symbols, numpy, refine, to_number
 from fastpicard.modes import COS, NO_ANGLE, Angle, Linear, Modes
 from fastpicard.ring import expression_of, monomial_expression, symbols_of
@@ -26,7 +27,7 @@ Array = Any
 Exponents = tuple[Any, ...]
 
 
-def vectorise(constants: list[Modes], params: Sequence[Symbol]) -> Callable[..., list[Array]]:
+def vectorise(constants: list[Modes], params: Sequence[Symbol], t: Symbol) -> Callable[..., list[Array]]:
     """A function of arrays, one for each parameter, that returns one float64 array for each constant.
 
     Raises
@@ -34,7 +35,7 @@ def vectorise(constants: list[Modes], params: Sequence[Symbol]) -> Callable[...,
     MissingParameterError
         if a parameter that occurs is not among ``params``.
     """
-    names = _checked(params)
+    names = _checked(params, t)
     missing = sorted(set().union(*map(free_symbols, constants)) - set(names), key=str)
     if missing:
         absent = ", ".join(map(str, missing))
@@ -46,16 +47,28 @@ def vectorise(constants: list[Modes], params: Sequence[Symbol]) -> Callable[...,
         if len(values) != len(names):
             raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were "
                                "given.  Give one number or array for each.")
-        arrays = list(numpy().broadcast_arrays(*(numpy().asarray(value, dtype=float) for value in values)))
+        arrays = list(numpy().broadcast_arrays(*(_array(value) for value in values)))
         return [polynomial(arrays) for polynomial in polynomials]
 
     return function
 
 
-def _checked(params: Sequence[Symbol]) -> tuple[Symbol, ...]:
-    names = (params,) if isinstance(params, Symbol) else params
-    if isinstance(names, str) or not all(isinstance(name, Symbol) for name in names):
+def _array(value: Any) -> Array:
+    array = numpy().asarray(value)
+    if array.dtype.kind in "USO" and not all(isinstance(x, numbers.Real | sympy.Number) for x in array.flat):
+        raise BadTypeError(f"the arguments must be numbers or arrays of numbers, but one is {value!r}.  "
+                           "Text and expressions are not evaluated.")
+    return array.astype(float)
+
+
+def _checked(params: Sequence[Symbol], t: Symbol) -> tuple[Symbol, ...]:
+    listed = isinstance(params, Iterable) and not isinstance(params, str)
+    names = [params] if isinstance(params, Symbol) else list(params) if listed else [params]
+    if not all(isinstance(name, Symbol) for name in names):
         raise BadTypeError(f"params must be a list of SymPy Symbols, but it is {params!r}.  Use [a, b].")
+    if len(set(names)) < len(names) or t in names:
+        raise BadInputError(f"params must be distinct and without the time {t}, but they are {names}.  "
+                            "Name each parameter once.")
     return tuple(names)
 
 
