@@ -1,17 +1,17 @@
-r"""``x' = P x`` in integers: the coordinates in which monomials and angles are numbers.
+r"""``x' = P x`` packed: the coordinates in which monomials and angles are integers.
 
-Exponent vectors of monomials and integer combinations of angles are packed into
-single integers, so that multiplying monomials or adding angles is one addition.
-One direction of the exponent lattice is kept apart as *blocks*, see
-:mod:`fastpicard.increments`.
+All frequencies of ``P`` are whole multiples of one unit ``w``; time is measured as
+``s = w t``.  Exponent vectors of monomials and integer combinations of angles are
+packed into single integers, so that multiplying monomials or adding angles is one
+addition.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd, lcm
+from math import lcm, prod
 from typing import Any
 
 from flint import fmpq
@@ -20,7 +20,8 @@ from fastpicard.modes import COS, Angle, Modes, common_unit
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
 FIELD = 32  # bits of one packed exponent or angle index
-Term = tuple[int, int, int, Any, int]  # kind, angle, monomial, coefficient, blocks to shift
+Term = tuple[int, int, int, Any]  # kind, angle, monomial, coefficient (fmpq)
+Row = tuple[tuple[int, tuple[Term, ...]], ...]  # (column, terms) of a row of P
 
 
 def pack(indices: Sequence[int]) -> int:
@@ -41,40 +42,27 @@ def unpack(packed: int, length: int) -> list[int]:
 
 @dataclass(frozen=True)
 class Coordinates:
-    """How monomials and angles of a problem become integers.
+    """How monomials and angles of a problem become integers, and back.
 
     Attributes
     ----------
     unit : (Monomial, fmpq)          the unit of frequency, ``w = unit[1] * unit[0]``
     phases : (Monomial, denominator)  each phase is an integer combination of ``monomial / denominator``
     generators : (number, denominator)  each exponent is a multiple of ``1 / denominator``
-    pivot, direction                 exponent vectors are ``e = rest + e[pivot] * direction``
     """
 
     unit: tuple[Monomial, Any]
     phases: tuple[tuple[Monomial, int], ...]
     generators: tuple[tuple[int, int], ...]
-    pivot: int | None
-    direction: tuple[int, ...]
 
-    def exponents(self, monomial: Monomial) -> tuple[int, ...]:
-        """The exponent vector of a monomial."""
+    def pack_monomial(self, monomial: Monomial) -> int:
+        """A monomial as one integer."""
         table = dict(monomial)
-        return tuple(int(table.get(g, 0) * d) for g, d in self.generators)
+        return pack([int(table.get(g, 0) * d) for g, d in self.generators])
 
-    def pack_monomial(self, monomial: Monomial) -> tuple[int, int]:
-        """A monomial as (packed rest, number of blocks to shift)."""
-        e = self.exponents(monomial)
-        if self.pivot is None:
-            return pack(e), 0
-        s = e[self.pivot]
-        return pack([x - s * v for x, v in zip(e, self.direction, strict=True)]), s
-
-    def monomial(self, packed: int, block: int) -> Monomial:
-        """The monomial at one block of a packed row."""
+    def monomial(self, packed: int) -> Monomial:
+        """The inverse of :meth:`pack_monomial`; relations such as ``sqrt(2)**2 = 2`` are not applied."""
         e = unpack(packed, len(self.generators))
-        if self.pivot is not None:
-            e = [x + block * v for x, v in zip(e, self.direction, strict=True)]
         return tuple((g, _quotient(x, d)) for (g, d), x in zip(self.generators, e, strict=True) if x)
 
     def pack_angle(self, angle: Angle) -> int:
@@ -108,26 +96,38 @@ def _quotient(x: int, d: int) -> Any:
 
 @dataclass(frozen=True)
 class Problem:
-    """``x' = P x`` with the columns ``x(0)``, all in integers.
+    """``x' = P x`` with the columns ``x(0)``, packed.
+
+    Parameters are measured in units, too: where ``P`` holds ``-b cos``, of which
+    a product to sum takes half, ``-b/2`` is the parameter, and its coefficient 1.
 
     Attributes
     ----------
-    rows : (factor, ((j, (Term, ...)), ...))   row i of ``P / w`` times ``factor``, where not zero;
-                                     products to sums leave the coefficients integers
-    start : columns of (Term, ...)   the entries of ``x(0)``, times ``start_denominator``
+    weights : fmpq for each generator               its unit
+    rows : ((j, (Term, ...)), ...) for each row     the nonzero entries of ``P / w``; the coefficients of sines and
+                                                  cosines are halved, as products to sums need them
+    start : columns of (Term, ...)                the entries of ``x(0)``
     """
 
     coordinates: Coordinates
-    rows: tuple[tuple[Any, tuple[tuple[int, tuple[Term, ...]], ...]], ...]
-    start_denominator: int
+    weights: tuple[Any, ...]
+    rows: tuple[Row, ...]
     start: tuple[tuple[tuple[Term, ...], ...], ...]
+
+    def weight(self, packed: int) -> Any:
+        """The unit of a monomial: the product of the units of its generators."""
+        return _weight(self.coordinates, self.weights, packed)
+
+
+def _weight(coordinates: Coordinates, weights: tuple[Any, ...], packed: int) -> Any:
+    return prod((w**e for w, e in zip(weights, unpack(packed, len(weights)), strict=True) if w != 1), start=fmpq(1))
 
 
 # -- setting up --------------------------------------------------------------
 
 
 def problem(matrix: Sequence[Sequence[Modes]], start: Sequence[Sequence[Modes]]) -> Problem | None:
-    """``P`` and the columns ``x(0)`` in integers, or None where the frequencies have no common unit."""
+    """``P`` and the columns ``x(0)`` packed, or None where the frequencies have no common unit."""
     entries = [modes for row in matrix for modes in row]
     constants = [modes for column in start for modes in column]
     coordinates = _coordinates(entries, constants)
@@ -135,41 +135,40 @@ def problem(matrix: Sequence[Sequence[Modes]], start: Sequence[Sequence[Modes]])
         return None
     gained, per_unit = multiply_monomials(ONE, tuple((g, -e) for g, e in coordinates.unit[0]))
     factor = gained / coordinates.unit[1]
-    rows = tuple(_row([_terms(modes, coordinates, per_unit, factor) for modes in row]) for row in matrix)
-    start_denominator = lcm(1, *(int(f[0].q) for modes in constants for f in modes.values()))
-    columns = tuple(tuple(tuple(_integer(term, fmpq(start_denominator)) for term in _terms(modes, coordinates, ONE, 1))
-                          for modes in column) for column in start)
-    return Problem(coordinates, rows, start_denominator, columns)
+    rows = [[(j, [_halved(term) for term in _terms(modes, coordinates, per_unit, factor)])
+             for j, modes in enumerate(row) if modes] for row in matrix]
+    weights = _weights(coordinates, [term for row in rows for _, terms in row for term in terms])
+
+    def weighted(terms: Iterable[Term]) -> tuple[Term, ...]:
+        return tuple((kind, k, m, c / _weight(coordinates, weights, m)) for kind, k, m, c in terms)
+
+    return Problem(coordinates, weights,
+                   tuple(tuple((j, weighted(terms)) for j, terms in row) for row in rows),
+                   tuple(tuple(weighted(_terms(modes, coordinates, ONE, 1)) for modes in column) for column in start))
 
 
-def _row(entries: list[tuple[Term, ...]]) -> tuple[Any, tuple[tuple[int, tuple[Term, ...]], ...]]:
-    """A row of ``P / w`` times the factor that makes it primitive: (factor, nonzero entries).
-
-    A product to sum halves the coefficient, so terms with an angle count half;
-    the sign is that of the last term, which saves a negation for most problems.
-    """
-    halved = [tuple((kind, k, m, c / 2 if k else c, blocks) for kind, k, m, c, blocks in terms) for terms in entries]
-    values = [c for terms in halved for *_, c, _ in terms]
-    if not values:
-        return fmpq(1), ()
-    factor = fmpq(lcm(*(int(c.q) for c in values)), gcd(*(int(c.p) for c in values)))
-    factor *= -1 if values[-1] < 0 else 1
-    entries_left = ((j, terms) for j, terms in enumerate(halved) if terms)
-    return factor, tuple((j, tuple(_integer(term, factor) for term in terms)) for j, terms in entries_left)
+def _weights(coordinates: Coordinates, terms: list[Term]) -> tuple[Any, ...]:
+    """For each generator the first coefficient with which it stands alone."""
+    first: dict[int, Any] = {}
+    for _, _, monomial, c in terms:
+        first.setdefault(monomial, c)
+    count = len(coordinates.generators)
+    alone = [pack([int(i == j) for j in range(count)]) for i in range(count)]
+    return tuple(first.get(monomial, fmpq(1)) for monomial in alone)
 
 
-def _integer(term: Term, factor: Any) -> Term:
-    kind, k, m, c, blocks = term
-    return kind, k, m, int((c * factor).p), blocks
+def _halved(term: Term) -> Term:
+    kind, angle, monomial, c = term
+    return kind, angle, monomial, c / 2 if angle or kind != COS else c
 
 
 def _terms(modes: Modes, coordinates: Coordinates, unit: Monomial, factor: Any) -> tuple[Term, ...]:
     terms = []
     for (kind, angle, monomial), f in modes.items():
-        packed, blocks = coordinates.pack_monomial(_join(monomial, unit))
+        packed = coordinates.pack_monomial(_join(monomial, unit))
         index = coordinates.pack_angle(angle)
         sign = -1 if index < 0 and kind != COS else 1
-        terms.append((kind, abs(index), packed, f[0] * factor * sign, blocks))
+        terms.append((kind, abs(index), packed, f[0] * factor * sign))
     return tuple(terms)
 
 
@@ -194,9 +193,7 @@ def _coordinates(entries: list[Modes], constants: list[Modes]) -> Coordinates | 
     monomials = [_join(m, inverse) for modes in entries for _, _, m in modes]
     initial = [m for modes in constants for _, _, m in modes]
     generators = tuple((g, lcm(*(_denominator(m, g) for m in [*monomials, *initial, unit[0]]))) for g in sorted(used))
-    plain = Coordinates(unit, _phases(every), generators, None, ())
-    pivot, direction = _direction([plain.exponents(m) for m in monomials], [plain.exponents(m) for m in initial])
-    return Coordinates(unit, plain.phases, generators, pivot, direction)
+    return Coordinates(unit, _phases(every), generators)
 
 
 def _denominator(monomial: Monomial, g: int) -> int:
@@ -209,16 +206,3 @@ def _phases(keys: list[Any]) -> tuple[tuple[Monomial, int], ...]:
         for m, c in phase:
             denominators[m] = lcm(denominators.get(m, 1), c.denominator)
     return tuple(sorted(denominators.items()))
-
-
-def _direction(monomials: list[tuple[int, ...]], initial: list[tuple[int, ...]]) -> tuple[int | None, tuple[int, ...]]:
-    """A direction of the exponent lattice along which products of the monomials spread."""
-    distinct = list(dict.fromkeys(e for e in monomials if any(e)))
-    if not distinct:
-        return None, ()
-    origin = distinct[1] if len(distinct) > 1 else tuple(0 for _ in distinct[0])
-    step = [x - y for x, y in zip(distinct[0], origin, strict=True)]
-    for pivot, size in enumerate(step):
-        if abs(size) == 1 and all(e[pivot] >= 0 for e in [*monomials, *initial]):
-            return pivot, tuple(size * x for x in step)
-    return None, ()

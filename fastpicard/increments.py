@@ -1,288 +1,242 @@
-r"""The increments of Picard iteration in whole numbers.
+r"""The increments of Picard iteration.
 
     Phi_n = I_0 + I_1 + ... + I_n,   I_{k+1}(t) = integral of P I_k from 0 to t
 
-so only the newest increment is ever multiplied and integrated.  Three choices
-leave nothing but additions of integers and multiplications by small ones.
+so only the newest increment is ever multiplied and integrated.  In the basis of
+:mod:`fastpicard.modes` a row of coefficients, over all powers of time, is one
+polynomial ``f(x)`` with ``x**r`` for ``s**r / r!``.  Products to sums only add such
+rows, and integration ``q G_r = f_r + G_{r+1}`` is one exact division,
 
-*Time.*  All frequencies of ``P`` are whole multiples of one unit ``w``; time is
-measured as ``s = w t``, which makes them integers ``q``.
+    G = quotient of  x f(x)  by  q x - 1,
 
-*No fractions.*  Let ``N`` be a common multiple of the frequencies that occur.  In
-the basis of :mod:`fastpicard.modes` the coefficient of ``s**r / r!`` in ``I_m``,
-times ``N**(m - r)`` and times one factor 2 and one common denominator of a row
-of ``P`` for every product, is an integer, and integration ``q G_r = f_r + G_{r+1}``
-becomes ``G_r = (N/q) (f_r + G_{r+1})``.
-
-*Kronecker substitution.*  One direction of the exponent lattice, such as
-``a/b`` for Mathieu's equation, is evaluated at a power of two so large that the
-coefficients, each a block of bits, never touch.  A whole row of monomials is
-then a single integer, and ``bits`` is proved large enough beforehand.
+all of it inside python-flint.  Rows are reduced fractions over one denominator.
+Where that grows long, the denominators of all rows of one monomial, which are
+nearly the same, are cleared together: sums then need no common divisors.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import accumulate
-from math import gcd, lcm
+from functools import cache
 from typing import Any
 
-from flint import fmpq, fmpz
+from flint import fmpq_poly, fmpz
 
-from fastpicard.blocks import Blocks
-from fastpicard.coordinates import Coordinates, Problem, Term
-from fastpicard.modes import COS
+from fastpicard.coordinates import Problem, Row, Term
+from fastpicard.modes import COS, SIN, Modes, add_reflected, mask, orient
+from fastpicard.ring import ONE, multiply_monomials
 
-Row = list[Any]  # fmpz coefficients of s**r / r!, r = 0, 1, ...
-Packed = dict[tuple[int, int, int], Row]  # (kind, angle, monomial) -> Row
-Factor = tuple[int, int, int, Any, int]  # kind, angle, monomial, odd coefficient, bits to shift
+Rows = dict[tuple[int, int], Any]  # (kind, angle) -> fmpq_poly
+Entry = dict[int, tuple[Any, Rows]]  # monomial -> (scale, rows times scale)
+Source = tuple[Any, Rows, Term]  # scale, rows, term of P
+
+LONG = 400  # bits of a denominator beyond which it is cleared
+
+_FLIP = fmpq_poly([0, -1])
 
 
 @dataclass(frozen=True)
 class Level:
-    """The increment ``I_m``: row ``r`` of entry ``i``, over ``scale[i] * base**(m - r)``, multiplies ``s**r / r!``."""
+    """The increment ``I_m``: column by column its entries."""
 
     order: int
-    columns: tuple[tuple[Packed, ...], ...]
-    scale: tuple[Any, ...]
-    base: int
-    bits: int
-
-
-# -- planning: a common multiple of the frequencies, a width for the blocks ---
-
-
-def common_multiple(p: Problem, n: int) -> int:
-    """The least common multiple of all frequencies met in ``I_0 .. I_n``."""
-    frequency = p.coordinates.frequency
-    moves = [(i, j, sorted({frequency(k) for _, k, *_ in terms}))
-             for i, (_, row) in enumerate(p.rows) for j, terms in row]
-    reached = {q for column in p.start for terms in column for _, k, *_ in terms for q in (frequency(k),)}
-    now = [{0} | reached if any(column[i] for column in p.start) else set() for i in range(len(p.rows))]
-    met: set[int] = {1}
-    for _ in range(n):
-        after: list[set[int]] = [set() for _ in p.rows]
-        for i, j, steps in moves:
-            after[i].update(abs(q + s * k) for q in now[j] for k in steps for s in (1, -1))
-        now = [{0} | qs if qs else qs for qs in after]
-        met.update(*now)
-    return lcm(*(q for q in met if q))
-
-
-def block_bits(p: Problem, n: int, base: int) -> int:
-    """Bits enough for every coefficient of ``I_0 .. I_n`` with its sign.
-
-    A majorant: absolute values everywhere, every frequency 1, all angles and
-    monomials lumped together.  It obeys the same recursion on ``n`` numbers.
-    """
-    now = [[max((sum(abs(c) for *_, c, _ in column[i]) for column in p.start), default=0)] for i in range(len(p.rows))]
-    scale = _first_scale(p)
-    largest = max(row[0] for row in now) + 1
-    for _ in range(n):
-        product = [[0] * len(now[0]) for _ in now]
-        for i, (_, row) in enumerate(p.rows):
-            for j, terms in row:
-                weight = _multiplier(p, scale, i, j) * sum((2 if k else 1) * abs(c) for _, k, _, c, _ in terms)
-                product[i] = [x + weight * y for x, y in zip(product[i], now[j], strict=True)]
-        scale = _next_scale(p, scale)
-        now = [_majorant(entry) for entry in product]
-        largest = max(largest, *(max(entry) for entry in now))
-    return int(-(-((largest * base**n).bit_length() + 2) // 8) * 8)
-
-
-def _first_scale(p: Problem) -> tuple[Any, ...]:
-    return tuple(fmpq(p.start_denominator) for _ in p.rows)
-
-
-def _common(scale: tuple[Any, ...], row: tuple[tuple[int, tuple[Term, ...]], ...]) -> Any:
-    """The least common multiple of the scales of all entries a row reads, with the sign of the first."""
-    values = [scale[j] for j, _ in row] or [fmpq(1)]
-    return fmpq(lcm(*(int(v.p) for v in values)), gcd(*(int(v.q) for v in values))) * (-1 if values[0] < 0 else 1)
-
-
-def _next_scale(p: Problem, scale: tuple[Any, ...]) -> tuple[Any, ...]:
-    return tuple(factor * _common(scale, row) for factor, row in p.rows)
-
-
-def _multiplier(p: Problem, scale: tuple[Any, ...], i: int, j: int) -> int:
-    """What brings entry ``j`` to the scale at which row ``i`` is summed."""
-    return int((_common(scale, p.rows[i][1]) / scale[j]).p)
-
-
-def _majorant(row: list[int]) -> list[int]:
-    """Suffix sums (q = 1), the shift (q = 0) and the constant that makes the value at 0 vanish."""
-    suffix = list(accumulate(reversed(row)))[::-1]
-    return [2 * suffix[0], *(x + y for x, y in zip(suffix[1:], row, strict=False)), row[-1]]
-
-
-# -- the iteration -----------------------------------------------------------
-
-
-def first_level(p: Problem, base: int, bits: int) -> Level:
-    """``I_0``: the columns ``x(0)``."""
-    columns = tuple(tuple(_initial(terms, bits) for terms in column) for column in p.start)
-    return Level(0, columns, _first_scale(p), base, bits)
-
-
-def _initial(terms: tuple[Term, ...], bits: int) -> Packed:
-    packed: Packed = {}
-    for kind, angle, monomial, c, blocks in terms:
-        add_row(packed, (kind, angle, monomial), [fmpz(c << (bits * blocks))])
-    return packed
-
-
-def next_level(p: Problem, level: Level) -> Level:
-    """``I_{m+1}``, the integral of ``P I_m``."""
-    multiples = _Multiples(p.coordinates, level.base)
-    rows = tuple(tuple((j, tuple(_factor(term, _multiplier(p, level.scale, i, j), level.bits) for term in terms))
-                       for j, terms in row) for i, (_, row) in enumerate(p.rows))
-    columns = tuple(tuple(_integral(_product(row, column), multiples) for row in rows) for column in level.columns)
-    return Level(level.order + 1, columns, _next_scale(p, level.scale), level.base, level.bits)
-
-
-def _factor(term: Term, multiplier: int, bits: int) -> Factor:
-    """A term with its powers of two turned into a shift."""
-    kind, k, m, c, blocks = term
-    c *= multiplier
-    twos = (c & -c).bit_length() - 1
-    return kind, k, m, fmpz(c >> twos), bits * blocks + twos
-
-
-def _product(row: tuple[tuple[int, tuple[Factor, ...]], ...], column: tuple[Packed, ...]) -> Packed:
-    """One row of ``P`` times one column, with the denominator cleared."""
-    product: Packed = {}
-    for j, factors in row:
-        for factor in factors:
-            if factor[1] or factor[0] != COS:
-                _multiply_wave(product, factor, column[j])
-            else:
-                _multiply_constant(product, factor, column[j])
-    return product
-
-
-def _multiply_constant(target: Packed, factor: Factor, source: Packed) -> None:
-    _, _, monomial, c, shift = factor
-    for (kind, angle, m), row in source.items():
-        add_row(target, (kind, angle, m + monomial), _times(row, c, shift))
-
-
-def _multiply_wave(target: Packed, factor: Factor, source: Packed) -> None:
-    """Add twice ``factor * source``: product to sum of [Neves], section 4."""
-    other, k, monomial, c, shift = factor
-    for (kind, angle, m), row in source.items():
-        outer = inner = _times(row, c, shift)
-        result = (kind + other) % 2
-        if other != COS:
-            outer, inner = (inner, _negative(inner)) if kind == COS else (_negative(inner), inner)
-        add_row(target, (result, angle + k, m + monomial), outer)
-        difference = angle - k
-        if difference < 0:
-            difference, inner = -difference, reflected(inner, result)
-        add_row(target, (result, difference, m + monomial), inner)
-
-
-def _times(row: Row, c: Any, shift: int) -> Row:
-    if c != 1:
-        row = _negative(row) if c == -1 else [c * x for x in row]
-    return [x << shift for x in row] if shift else row
-
-
-def _negative(row: Row) -> Row:
-    return [-x for x in row]
-
-
-def reflected(row: Row, kind: int) -> Row:
-    """``c_r(-x) = (-1)**r c_r(x)``, ``s_r(-x) = -(-1)**r s_r(x)``."""
-    return [-x if (r + kind) % 2 else x for r, x in enumerate(row)]
-
-
-def add_row(target: Packed, key: tuple[int, int, int], row: Row) -> None:
-    """Add one row in place; rows are never changed, so they may be shared."""
-    old = target.get(key)
-    if old is not None:
-        if len(old) < len(row):
-            old, row = row, old
-        row = [x + y for x, y in zip(old, row, strict=False)] + old[len(row):]
-    target[key] = row
-
-
-class _Multiples:
-    """``N / q`` for the packed angles of one problem."""
-
-    def __init__(self, coordinates: Coordinates, base: int) -> None:
-        self.coordinates, self.base = coordinates, base
-        self.known: dict[int, tuple[Any, int]] = {}
-
-    def of(self, angle: int) -> tuple[Any, int]:
-        """``(N / q, the angle at time 0)``; 0 stands for ``1 / 0``."""
-        found = self.known.get(angle)
-        if found is None:
-            q = self.coordinates.frequency(angle)
-            start = self.coordinates.without_frequency(angle)
-            found = self.known[angle] = (fmpz(self.base // q) if q else 0, start)
-        return found
-
-
-def _integral(product: Packed, multiples: _Multiples) -> Packed:
-    """The antiderivative that is zero at 0, row by row."""
-    result: Packed = {}
-    for (kind, angle, m), row in product.items():
-        multiple, start = multiples.of(angle)
-        if angle == 0:
-            row = [fmpz(0) if (r + kind) % 2 else x for r, x in enumerate(row)]
-        if not any(row):
-            continue
-        row = _recurrence(row, multiple, kind) if multiple else [fmpz(0), *(row if kind != COS else _negative(row))]
-        add_row(result, (1 - kind, angle, m), row)
-        if multiple and (start or kind != COS):
-            constant = [-row[0]]
-            if start < 0:
-                start, constant = -start, reflected(constant, 1 - kind)
-            add_row(result, (1 - kind, start, m), constant)
-    return result
-
-
-def _recurrence(row: Row, multiple: Any, kind: int) -> Row:
-    """``G_r = (N/q) (f_r + G_{r+1})`` from the highest power down; ``-G`` for a sine series."""
-    g, result = fmpz(0), []
-    if kind == COS:
-        for x in reversed(row):
-            g = multiple * (g + x)
-            result.append(g)
-    else:
-        for x in reversed(row):
-            g = multiple * (g - x)
-            result.append(g)
-    result.reverse()
-    return result
-
-
-# -- going on ----------------------------------------------------------------
-
-
-def rebased(level: Level, base: int, bits: int) -> Level:
-    """The same increment over another common multiple and block width, to go on further from it."""
-    ratio = fmpz(base // level.base)
-    blocks = Blocks(level.bits)
-
-    def convert(row: Row) -> Row:
-        return [sum((x << (bits * b) for b, x in enumerate(blocks.of(value))), fmpz(0)) * ratio ** (level.order - r)
-                for r, value in enumerate(row)]
-
-    columns = tuple(tuple({key: convert(row) for key, row in packed.items()} for packed in column)
-                    for column in level.columns)
-    return Level(level.order, columns, level.scale, base, bits)
+    columns: tuple[tuple[Entry, ...], ...]
 
 
 def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ...]:
     """``I_0 .. I_n``, going on from those already known."""
-    if len(known) > n:
-        return known[:n + 1]
-    base = common_multiple(p, n)
-    bits = block_bits(p, n, base)
-    result = list(known) or [first_level(p, base, bits)]
-    level = rebased(result[-1], base, bits) if known else result[0]
-    while level.order < n:
-        level = next_level(p, level)
-        result.append(level)
+    result = list(known[:n + 1]) or [first_level(p)]
+    while len(result) <= n:
+        result.append(next_level(p, result[-1]))
     return tuple(result)
+
+
+def first_level(p: Problem) -> Level:
+    """``I_0``: the columns ``x(0)``."""
+    return Level(0, tuple(tuple(_constants(terms) for terms in column) for column in p.start))
+
+
+def _constants(terms: tuple[Term, ...]) -> Entry:
+    entry: Entry = {}
+    for kind, angle, monomial, c in terms:
+        _add_rows(entry.setdefault(monomial, (fmpz(1), {}))[1], {(kind, angle): fmpq_poly([c])})
+    return entry
+
+
+def next_level(p: Problem, level: Level) -> Level:
+    """``I_{m+1}``, the integral of ``P I_m``."""
+    divisors = _Divisors(p)
+    columns = tuple(tuple(_integrated_product(row, column, divisors) for row in p.rows) for column in level.columns)
+    return Level(level.order + 1, columns)
+
+
+# -- one row of P times one column, integrated --------------------------------
+
+
+def _integrated_product(row: Row, column: tuple[Entry, ...], divisors: _Divisors) -> Entry:
+    sources: dict[int, list[Source]] = {}
+    for j, terms in row:
+        for monomial, (scale, rows) in column[j].items():
+            for term in terms:
+                sources.setdefault(monomial + term[2], []).append((scale, rows, term))
+    result: Entry = {}
+    for monomial, group in sources.items():
+        scale = _lcm(source[0] for source in group)
+        integral = _integral(_product(group, scale), divisors)
+        if integral:
+            result[monomial] = _cleared(scale, integral)
+    return result
+
+
+def _lcm(values: Iterable[Any]) -> Any:
+    result = fmpz(1)
+    for value in values:
+        if value != result:
+            result = result // result.gcd(value) * value
+    return result
+
+
+def _cleared(scale: Any, rows: Rows) -> tuple[Any, Rows]:
+    """The rows with their denominators cleared, where these are long and nearly the same."""
+    longest = max(row.denom().bit_length() for row in rows.values())
+    if longest < LONG:
+        return scale, rows
+    common = fmpz(1)
+    for row in rows.values():
+        common = _lcm((common, row.denom()))
+        if common.bit_length() > 1.5 * longest:
+            return scale, rows
+    return scale * common, {key: row * common for key, row in rows.items()}
+
+
+def _product(group: list[Source], scale: Any) -> Rows:
+    """The rows of one monomial of the product."""
+    target: Rows = {}
+    for own_scale, rows, (other, k, _, c) in group:
+        factor = c * (scale // own_scale)
+        if factor != 1:
+            rows = {key: row * factor for key, row in rows.items()}
+        if k and other == COS:
+            _multiply_cosine(target, rows, k)
+        elif other == COS:
+            _add_rows(target, rows)
+        else:
+            _multiply_sine(target, rows, k)
+    return target
+
+
+def _add_rows(target: Rows, rows: Rows) -> None:
+    for key, row in rows.items():
+        old = target.get(key)
+        target[key] = row if old is None else old + row
+
+
+def _multiply_cosine(target: Rows, rows: Rows, k: int) -> None:
+    """Add ``2 cos(k) rows``: every row moves up by ``k`` and down by ``k`` ([Neves], section 4: product to sum)."""
+    get = target.get
+    for (kind, angle), row in rows.items():
+        if angle == 0:
+            row = row + row
+        else:
+            lower, below = angle - k, row
+            if lower < 0:
+                lower, below = -lower, reflected(kind, row)
+            old = get((kind, lower))
+            target[kind, lower] = below if old is None else old + below
+        old = get((kind, angle + k))
+        target[kind, angle + k] = row if old is None else old + row
+
+
+def _multiply_sine(target: Rows, rows: Rows, k: int) -> None:
+    """Add ``2 sin(k) rows``: the kind changes, and one of the two directions its sign."""
+    for (kind, angle), row in rows.items():
+        outer, inner = (row, -row) if kind == COS else (-row, row)
+        lower = angle - k
+        if lower < 0:
+            lower, inner = -lower, reflected(1 - kind, inner)
+        _add_rows(target, {(1 - kind, angle + k): outer})
+        _add_rows(target, {(1 - kind, lower): inner})
+
+
+def reflected(kind: int, row: Any) -> Any:
+    """``c_r(-x) = (-1)**r c_r(x)``, ``s_r(-x) = -(-1)**r s_r(x)``."""
+    return row(_FLIP) if kind == COS else -row(_FLIP)
+
+
+class _Divisors:
+    """The polynomials ``q x - 1`` of the packed angles of one problem, ``1 - q x`` for sines."""
+
+    def __init__(self, p: Problem) -> None:
+        self.coordinates = p.coordinates
+        self.known: dict[tuple[int, int], tuple[Any, int]] = {}
+
+    def of(self, key: tuple[int, int]) -> tuple[Any, int]:
+        """``(divisor, the angle at time 0)``; None for the divisor where ``q = 0``."""
+        found = self.known.get(key)
+        if found is None:
+            kind, angle = key
+            q = self.coordinates.frequency(angle)
+            divisor = fmpq_poly([-1, q] if kind == COS else [1, -q]) if q else None
+            found = self.known[key] = divisor, self.coordinates.without_frequency(angle)
+        return found
+
+
+def _integral(product: Rows, divisors: _Divisors) -> Rows:
+    """The antiderivative that is zero at 0, row by row."""
+    result: Rows = {}
+    constants: dict[int, Any] = {}
+    for key, row in product.items():
+        kind, angle = key
+        divisor, start = divisors.of(key)
+        if angle == 0:
+            row = mask(kind, row)
+        if not row:
+            continue
+        if divisor is None:
+            _add_rows(result, {(1 - kind, angle): row.left_shift(1) * (-1 if kind == COS else 1)})
+            continue
+        row = row.left_shift(1) // divisor
+        result[1 - kind, angle] = row
+        if kind != COS:
+            constants[abs(start)] = constants.get(abs(start), 0) - row[0]
+        elif start:
+            _add_rows(result, {(SIN, abs(start)): fmpq_poly([-row[0] if start > 0 else row[0]])})
+    _add_rows(result, {(COS, start): fmpq_poly([value]) for start, value in constants.items()})
+    return result
+
+
+# -- leaving the packed form --------------------------------------------------
+
+
+def without_frequencies(p: Problem, entry: Entry) -> Entry:
+    """The entry after whole turns of every angle: only powers of time and phases remain."""
+    result: Entry = {}
+    for monomial, (scale, rows) in entry.items():
+        collapsed: Rows = {}
+        for (kind, angle), row in rows.items():
+            start = p.coordinates.without_frequency(angle)
+            _add_rows(collapsed, {(kind, abs(start)): reflected(kind, row) if start < 0 else row})
+        result[monomial] = scale, collapsed
+    return result
+
+
+def to_modes(p: Problem, entry: Entry) -> Modes:
+    """An entry of an increment as a series in ``t = s / unit``."""
+    modes: Modes = {}
+    unit, rate = p.coordinates.unit
+    stretch = fmpq_poly([0, rate])
+    exact_angle = cache(lambda packed: orient(p.coordinates.angle(packed)))
+    for packed, (scale, rows) in entry.items():
+        factor, monomial = multiply_monomials(ONE, p.coordinates.monomial(packed))
+        factor *= p.weight(packed) / scale
+        for (kind, angle), row in rows.items():
+            row = row if rate == 1 else row(stretch)
+            row = row if factor == 1 else row * factor
+            if unit == ONE:
+                add_reflected(modes, kind, *exact_angle(angle), monomial, row)
+                continue
+            for r, value in enumerate(row.coeffs()):
+                gained, product = multiply_monomials(monomial, tuple((g, r * e) for g, e in unit if r))
+                add_reflected(modes, kind, *exact_angle(angle), product, fmpq_poly([0] * r + [value * gained]))
+    return modes

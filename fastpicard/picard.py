@@ -29,15 +29,12 @@ from fastpicard import modes as algebra
 from fastpicard.coordinates import Problem, problem
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values
-from fastpicard.increments import Level, common_multiple, levels
+from fastpicard.increments import Level, levels, to_modes, without_frequencies
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, read_matrix, read_vector
 from fastpicard.modes import Modes
-from fastpicard.reading import as_expression, as_polynomial, as_time, read_constant
+from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, read_constant
 from fastpicard.ring import ONE, Polynomial
 from fastpicard.series import PoissonSeries
-from fastpicard.unpacking import to_modes, without_frequencies
-
-LARGEST_MULTIPLE = 1 << 1024  # a common multiple of the frequencies beyond this is no saving
 
 
 def check_order(n: Any) -> int:
@@ -83,13 +80,15 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     [1 - t**2/2],
     [t**3/6 - t]])
     """
+    if not callable(f):
+        raise BadTypeError(f"f must be a function of (t, x), but it is {f!r}.  Use lambda t, x: [...].")
     t = as_time(t)
     start = _plain_vector(x0, t)
     t0 = _plain_constant(t0, t, "t0")
     s = sympy.Dummy("s")
     x = Matrix(start)
     for _ in range(check_order(n)):
-        slope = Matrix(f(s, x.subs(t, s)))
+        slope = _slope(f(s, x.subs(t, s)))
         if slope.shape != x.shape:
             raise BadInputError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "
                                 "Return one component for each unknown.")
@@ -97,12 +96,20 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     return ImmutableMatrix(x)
 
 
+def _slope(value: Any) -> Matrix:
+    if isinstance(value, sympy.MatrixBase):
+        return Matrix(value)
+    if isinstance(value, str) or not isinstance(value, list | tuple):
+        raise BadTypeError(f"f(t, x) must be a list or a column vector, but it is {value!r}.  Return its components.")
+    rows = [row if isinstance(row, list | tuple) else [row] for row in value]
+    return Matrix([[as_expression(entry, "every component of f(t, x)") for entry in row] for row in rows])
+
+
 def _plain_constant(value: Any, t: Symbol, what: str) -> Expr:
-    expression = as_expression(value, what)
+    expression = as_finite(value, what)
+    check_same_time(expression, t)
     if t in expression.free_symbols:
         raise BadInputError(f"{what} must not depend on {t}, but it is {expression}.  Use another symbol.")
-    if expression.is_finite is False:
-        raise BadInputError(f"{what} must be finite, but it is {expression}.  Give a finite value.")
     return expression
 
 
@@ -112,30 +119,27 @@ def _plain_vector(x0: Any, t: Symbol) -> list[Expr]:
     return [_plain_constant(value, t, f"x0[{i}]") for i, value in enumerate(x0)]
 
 
-# -- increments, in integers or in series ------------------------------------
+# -- increments, packed or as series ------------------------------------------
 
 
 @dataclass(frozen=True)
-class IntegerIncrements:
+class PackedIncrements:
     """``I_0 .. I_n`` from :mod:`fastpicard.increments`."""
 
     problem: Problem
     levels: tuple[Level, ...]
 
-    def to_order(self, n: int) -> IntegerIncrements:
+    def to_order(self, n: int) -> PackedIncrements:
         """The same up to order ``n``; only what is new is computed."""
-        return IntegerIncrements(self.problem, levels(self.problem, n, self.levels))
+        return PackedIncrements(self.problem, levels(self.problem, n, self.levels))
 
     def entry(self, k: int, i: int, j: int) -> Modes:
         """Entry ``(i, j)`` of ``I_k``."""
-        level = self.levels[k]
-        return to_modes(self.problem, level, i, level.columns[j][i])
+        return to_modes(self.problem, self.levels[k].columns[j][i])
 
     def whole_turns(self, k: int, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
-        level = self.levels[k]
-        packed = without_frequencies(self.problem, level.columns[j][i])
-        return to_modes(self.problem, level, i, packed)
+        return to_modes(self.problem, without_frequencies(self.problem, self.levels[k].columns[j][i]))
 
 
 @dataclass(frozen=True)
@@ -165,14 +169,14 @@ class SeriesIncrements:
         return modes
 
 
-Increments = IntegerIncrements | SeriesIncrements
+Increments = PackedIncrements | SeriesIncrements
 
 
 def first_increments(P: SeriesMatrix, columns: list[tuple[Modes, ...]], n: int) -> Increments:
-    """``I_0 .. I_n`` for the given columns, in integers where the frequencies of ``P`` have a common unit."""
-    integers = problem(P.rows, columns)
-    if integers is not None and common_multiple(integers, n) < LARGEST_MULTIPLE:
-        return IntegerIncrements(integers, ()).to_order(n)
+    """``I_0 .. I_n`` for the given columns, packed where the frequencies of ``P`` have a common unit."""
+    packed = problem(P.rows, columns)
+    if packed is not None:
+        return PackedIncrements(packed, ()).to_order(n)
     rows = tuple(zip(*columns, strict=True))
     return SeriesIncrements(P, (SeriesMatrix(rows, P.t),)).to_order(n)
 
@@ -185,7 +189,7 @@ class PicardIterate:
     """The exact n-th Picard iterate of ``x' = P(t) x``, one column for each initial vector.
 
     Immutable.  Coefficients are exact rationals times parameters; nothing is
-    rounded.  The iterate stays in the engine's integers until it is asked for.
+    rounded.  The iterate stays in the engine's own form until it is asked for.
 
     Attributes
     ----------

@@ -289,12 +289,20 @@ def _trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes
         algebra.add_reflected(result, other, turned, angle, ONE, fmpq_poly([sign]))
         return result
     fixed = to_sympy_number(half_turns) * pi
-    along, across = _read(cos(fixed), t), _read(sin(fixed), t)
+    along, across = _fixed_value(cos(fixed), t), _fixed_value(sin(fixed), t)
     same: Modes = {}
     turned_quarter: Modes = {}
     algebra.add_reflected(same, kind, turned, angle, ONE, fmpq_poly([1]))
     algebra.add_reflected(turned_quarter, 1 - kind, turned, angle, ONE, fmpq_poly([-1 if kind == COS else 1]))
     return algebra.total(algebra.product(along, same), algebra.product(across, turned_quarter))
+
+
+def _fixed_value(value: Expr, t: Symbol) -> Modes:
+    """cos or sin of a rational multiple of pi: radicals where SymPy knows them, a generator of its own otherwise."""
+    sign, rest = value.as_coeff_Mul()
+    if isinstance(rest, sin | cos):
+        return algebra.scaled(algebra.constant(power(rest, 1)), {ONE: rational(sign)})
+    return _read(value, t)
 
 
 def _read_exponential(e: Expr, t: Symbol) -> Modes:

@@ -190,8 +190,11 @@ def is_zero(terms: Polynomial) -> bool:
     """Whether a polynomial vanishes identically, relations between its generators included."""
     if not terms or not has_relations(terms):
         return not terms
-    expression = to_expression(terms)
-    numerator = sympy.fraction(sympy.together(expression))[0].expand()
-    if numerator.is_number:
-        return bool(numerator.equals(0))
-    return bool(numerator == 0 or sympy.radsimp(numerator).expand() == 0)
+    numerator = sympy.fraction(sympy.together(to_expression(terms)))[0].expand()
+    if numerator == 0:
+        return True
+    symbols = sorted(numerator.free_symbols, key=str)
+    if symbols and not numerator.is_polynomial(*symbols):
+        return bool(sympy.radsimp(numerator).expand() == 0)
+    coefficients = sympy.Poly(numerator, *symbols, domain="EX").coeffs() if symbols else [numerator]
+    return all(bool(c.equals(0)) for c in coefficients)

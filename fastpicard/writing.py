@@ -16,7 +16,7 @@ from sympy.core.basic import ordering_of_classes
 
 from fastpicard import modes as algebra
 from fastpicard.modes import NO_ANGLE, Angle, Linear, Modes
-from fastpicard.ring import Monomial, Polynomial, add_term, expression_of, monomial_expression, to_expression
+from fastpicard.ring import ONE, Monomial, Polynomial, add_term, expression_of, monomial_expression, to_expression
 
 _RANK = {name: rank for rank, name in enumerate(ordering_of_classes)}
 _UNKNOWN = len(ordering_of_classes) + 1
@@ -51,51 +51,69 @@ def _sum(terms: list[tuple[Any, Expr]]) -> Expr:
     return Add._from_args(constants + [e for _, e in keyed], is_commutative=True)
 
 
+Keyed = tuple[tuple[Any, Expr], ...]  # factors with their order keys
+
+
+def _keyed(factors: list[Expr]) -> Keyed:
+    return tuple((order_key(e), e) for e in factors)
+
+
 class _Writer:
     """Writes modes, remembering factors and their order."""
 
     def __init__(self, t: Symbol) -> None:
         self.t = t
-        self.factors: dict[Any, tuple[int, tuple[tuple[Any, Expr], ...], bool]] = {}
-        self.trigonometric: dict[Any, tuple[int, Expr]] = {}
+        self.monomials: dict[Monomial, tuple[Keyed, bool]] = {}
+        self.powers: dict[int, Keyed] = {0: ()}
+        self.waves: dict[tuple[bool, Angle], tuple[int, Keyed, bool]] = {}
 
     def add(self, terms: list[tuple[Any, Expr]], kind: int, angle: Angle, monomial: Monomial, f: Any) -> None:
         """Append every term of one mode."""
-        numerator, denominator = f.numer().coeffs(), int(f.denom())
-        for r, c in enumerate(numerator):
+        factors, plain = self.monomial(monomial)
+        numerators, denominator = f.numer().coeffs(), int(f.denom())
+        for r, c in enumerate(numerators):
             if c:
                 sine, sign = algebra.function_of(kind, r)
-                sign, factors, plain = self.product(monomial, r, sine, angle, sign)
-                value = sympy.Rational(sign * int(c), denominator * factorial(r))
-                terms.append(_term(value, factors) if plain else (None, Mul(value, *(e for _, e in factors))))
+                own_sign, wave, regular = self.wave(sine, angle)
+                value = sympy.Rational(sign * own_sign * int(c), denominator * factorial(r))
+                product = sorted((*factors, *self.power(r), *wave), key=_first)
+                terms.append(_term(value, product) if plain and regular else
+                             (None, Mul(value, *(e for _, e in product))))
 
-    def product(self, monomial: Monomial, r: int, sine: bool, angle: Angle, sign: int) -> Any:
-        """The factors of ``monomial * t**r * cos`` in canonical order."""
-        key = (monomial, r, sine, angle)
-        found = self.factors.get(key)
-        if found is None:
-            found = self.factors[key] = self._product(monomial, r, sine, angle)
-        own, factors, plain = found
-        return sign * own, factors, plain
+    def monomial(self, monomial: Monomial) -> tuple[Keyed, bool]:
+        """The factors of a monomial, and whether SymPy leaves their products alone."""
+        if monomial not in self.monomials:
+            factors = [expression_of(g) ** sympy.Rational(e) for g, e in monomial]
+            plain = all((e.base if e.is_Pow else e).is_Symbol or (e.base if e.is_Pow else e) is pi for e in factors)
+            self.monomials[monomial] = _keyed(factors), plain
+        return self.monomials[monomial]
 
-    def _product(self, monomial: Monomial, r: int, sine: bool, angle: Angle) -> Any:
-        sign, trigonometric = self.function(sine, angle)
-        factors = [expression_of(g) ** sympy.Rational(e) for g, e in monomial]
-        factors += [self.t**r] * (r > 0) + [trigonometric] * (angle != NO_ANGLE)
-        plain = all(e.is_Symbol or e.is_Pow and e.base.is_Symbol or isinstance(e, sin | cos) or e is pi
-                    or e.is_Pow and e.base is pi for e in factors)
-        return sign, tuple(sorted(((order_key(e), e) for e in factors), key=lambda item: item[0])), plain
+    def power(self, r: int) -> Keyed:
+        """``t**r``, no factor for r = 0."""
+        if r not in self.powers:
+            self.powers[r] = _keyed([self.t**r])
+        return self.powers[r]
 
-    def function(self, sine: bool, angle: Angle) -> tuple[int, Expr]:
-        """cos or sin of an angle as SymPy evaluates it, with the sign it may pull out."""
+    def wave(self, sine: bool, angle: Angle) -> tuple[int, Keyed, bool]:
+        """cos or sin of an angle as SymPy evaluates it: the sign it pulls out, its factor, whether that is plain."""
         key = (sine, angle)
-        if key not in self.trigonometric:
-            sign, e = (sin if sine else cos)(angle_expression(angle, self.t)).as_coeff_Mul()
-            self.trigonometric[key] = (int(sign), e) if e is not sympy.S.One else (1, sign)
-        return self.trigonometric[key]
+        if key not in self.waves:
+            if angle == NO_ANGLE:
+                self.waves[key] = 1, (), True
+            else:
+                # Of a positive rational times t SymPy leaves the cosine as it is, after 2 ms of thought.
+                known = not angle[1] and len(angle[0]) == 1 and angle[0][0][0] == ONE
+                function = sin if sine else cos
+                sign, e = function(angle_expression(angle, self.t), evaluate=not known).as_coeff_Mul()
+                self.waves[key] = int(sign), _keyed([e]), isinstance(e, sin | cos)
+        return self.waves[key]
 
 
-def _term(value: Expr, factors: tuple[tuple[Any, Expr], ...]) -> tuple[Any, Expr]:
+def _first(pair: tuple[Any, Expr]) -> Any:
+    return pair[0]
+
+
+def _term(value: Expr, factors: list[tuple[Any, Expr]]) -> tuple[Any, Expr]:
     """``value * factors`` with its key, both built without evaluation."""
     if not factors:
         return None, value
@@ -141,8 +159,9 @@ def gathered(modes: Modes, t: Symbol) -> Expr:
         for r, c in enumerate(f.coeffs()):
             sine, sign = algebra.function_of(kind, r)
             add_term(collected.setdefault((r, sine, angle), {}), monomial, c * sign / factorial(r))
-    terms = []
+    coefficients: dict[Expr, list[Expr]] = {}
     for (r, sine, angle), coefficient in collected.items():
         function = (sin if sine else cos)(angle_expression(angle, t))
-        terms.append(to_expression(coefficient) * t**r * function)
-    return Add(*terms)
+        constant, wave = (sympy.S.One, function) if angle[0] else (function, sympy.S.One)
+        coefficients.setdefault(t**r * wave, []).append(to_expression(coefficient) * constant)
+    return Add(*(Add(*parts) * wave for wave, parts in coefficients.items()))
