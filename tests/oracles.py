@@ -163,6 +163,18 @@ def closeness(left, right):
         return abs(left - right) / max(1, abs(right))
 
 
+def distance(left, right):
+    """The largest difference of two mpmath matrices, in as many digits as both have."""
+    with mpmath.workdps(150):
+        return mpmath.mnorm(left - right, mpmath.inf)
+
+
+def within(left, right, bound, slack):
+    """Whether two mpmath matrices differ by no more than a matrix of bounds, plus a slack."""
+    with mpmath.workdps(150):
+        return all(abs(x - y) <= z + slack for x, y, z in zip(left, right, bound))
+
+
 # -- the true fundamental matrix ---------------------------------------------------
 
 

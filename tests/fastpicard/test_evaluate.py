@@ -1,0 +1,142 @@
+"""Numbers from exact results: every digit asked for, and refusal where there is none."""
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+from flint import arb, ctx
+from hypothesis import given, strategies as st
+from sympy import Rational, Symbol, cos, exp, pi, sin, sqrt
+
+from fastpicard import BadInputError, FundamentalMatrix, PoissonSeries
+from tests.oracles import closeness
+from tests.strategies import a, b, phi, t, w
+
+
+@given(st.floats(-50, 50), st.floats(-3, 3), st.integers(1, 60))
+def test_values_at_floats_are_values_at_the_dyadic_numbers_they_are(time, value, digits):
+    """The series at a float is the series at its exact fraction, to every digit."""
+    f = PoissonSeries(a * t * cos(w * t + 1) + a**2, t)
+    exact = {a: Rational(*value.as_integer_ratio()), w: 2}
+
+    assert f.evaluate(time, {a: value, w: 2}, digits) == f.evaluate(Rational(*time.as_integer_ratio()), exact, digits)
+
+
+@given(st.integers(0, 60), st.fractions(-5, 5, max_denominator=50), st.integers(1, 40))
+def test_sums_that_cancel_keep_every_digit(n, x, digits):
+    """The sections of exp(-30 x ...) written as powers: terms larger than the sum by many orders."""
+    section = sympy.Add(*(Rational((-30) ** k, sympy.factorial(k)) * t**k for k in range(n + 1)))
+    exact = section.subs(t, Rational(x))
+
+    found = PoissonSeries(section, t).evaluate(x, {}, digits)
+    with mpmath.workdps(120):
+        truth = mpmath.mpf(int(exact.p)) / int(exact.q)
+        assert abs(found - truth) <= abs(truth) * mpmath.mpf(10) ** (1 - digits)
+
+
+@given(st.integers(1, 300))
+def test_digits_are_the_beginning_of_one_number(digits):
+    """cos(1) to any number of digits."""
+    found = PoissonSeries(cos(t), t).evaluate(1, {}, digits)
+
+    with mpmath.workdps(320):
+        assert abs(found / mpmath.cos(1) - 1) <= mpmath.mpf(10) ** (1 - digits)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        cos(phi) * t,
+        exp(phi),
+        sympy.log(2 + phi),
+        sympy.tan(phi),
+        sympy.atan(phi),
+        sympy.sinh(phi),
+        sympy.cosh(phi),
+        sympy.tanh(phi),
+        sympy.Abs(-phi),
+        sympy.asin(phi),
+        sympy.acos(phi),
+        sympy.E**phi,
+        sympy.E + t,
+        2**phi,
+        phi ** Rational(2, 3),
+        phi ** -Rational(1, 2),
+        sqrt(1 + phi),
+        sympy.GoldenRatio * t,
+        sympy.EulerGamma,
+        sympy.Catalan,
+    ],
+    ids=str,
+)
+def test_functions_of_parameters_have_values_in_balls(expression):
+    """Coefficients may hold them; thirty digits against SymPy, or a refusal that names the function."""
+    f = PoissonSeries(expression, t)
+    try:
+        found = f.evaluate(1, {phi: Rational(2, 5)}, 30)
+    except BadInputError as error:
+        assert "no rigorous value" in str(error)
+        return
+
+    assert closeness(found, str(sympy.N(expression.subs({phi: Rational(2, 5), t: 1}), 40))) < mpmath.mpf(10) ** -29
+
+
+def test_an_exact_zero_is_zero_and_not_an_endless_search():
+    """sin(pi) and cos(pi/2) are computed in balls that contain 0 however small."""
+    assert PoissonSeries(sin(t), t).evaluate(pi) == 0
+    assert PoissonSeries(cos(t), t).evaluate(pi / 2, {}, 50) == 0
+    assert PoissonSeries(a - b, t).evaluate(1, {a: sqrt(2), b: 1 / sqrt(2) * 2}) == 0
+
+
+def test_balls_with_a_radius_give_no_digits_beyond_it():
+    """A parameter known to 3 digits cannot give 15."""
+    with pytest.raises(BadInputError, match="digits"):
+        PoissonSeries(a * t, t).evaluate(1, {a: arb(1, 1e-3)})
+    assert PoissonSeries(a * t, t).evaluate(2, {a: arb(0.75)}) == 1.5
+
+
+def test_the_global_precision_of_others_neither_matters_nor_changes():
+    """mpmath's and flint's own precision stay what they were and change no digit."""
+    f = PoissonSeries(cos(t) / 3, t)
+    expected = f.evaluate(1, {}, 40)
+    with mpmath.workdps(5), ctx.workprec(20):
+        assert f.evaluate(1, {}, 40) == expected
+        assert (mpmath.mp.dps, ctx.prec) == (5, 20)
+
+
+def test_floats_lose_nothing_where_terms_exceed_the_sum_by_twenty_digits():
+    """Order 40 at t = 1/2, (a, b) = (5/2, 3/2): term by term in floats no digit is right; here all are."""
+    Phi = FundamentalMatrix(sympy.Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 40)[0, 0]
+    values = {a: Rational(5, 2), b: Rational(3, 2)}
+
+    assert Phi.evaluate(0.5, values) == float(Phi.evaluate(Rational(1, 2), values, 40))
+    assert 0.5 < Phi.evaluate(0.5, values) < 0.7
+
+
+@pytest.mark.parametrize(
+    "value, kind", [(1e300, float), (1e-300, float), (5e-324, float), (-0.0, float), (2**1023, int)]
+)
+def test_floats_at_the_ends_of_their_range_go_through(value, kind):
+    """The largest, the smallest and the denormal ones; zero has one sign."""
+    assert PoissonSeries(a, t).evaluate(0, {a: value}) == kind(value)
+    assert isinstance(PoissonSeries(a, t).evaluate(0, {a: value}), float)
+
+
+def test_results_have_the_types_promised():
+    """float and mpf; arrays and mpmath matrices."""
+    Phi = FundamentalMatrix([[cos(t)]], t, 2)
+
+    assert type(PoissonSeries(t, t).evaluate(1)) is float
+    assert isinstance(PoissonSeries(t, t).evaluate(1, {}, 20), mpmath.mpf)
+    assert (
+        isinstance(Phi.evaluate(1), np.ndarray) and Phi.evaluate(1).dtype == float and Phi.evaluate(1).shape == (1, 1)
+    )
+    assert isinstance(Phi.evaluate(1, {}, 20), mpmath.matrix)
+
+
+@pytest.mark.parametrize("name", ["a", "lambda", "x y", "1", "", "__class__", "\\omega"])
+def test_parameters_with_strange_names_have_values_too(name):
+    """A name is only a name."""
+    p = Symbol(name)
+
+    assert PoissonSeries(p * t, t).evaluate(2, {p: 3}) == 6

@@ -1,0 +1,143 @@
+"""Integrals of Poisson series: against SymPy, quadrature and the article's recursion."""
+
+from fractions import Fraction
+
+import mpmath
+import pytest
+import sympy
+from hypothesis import given, strategies as st
+from sympy import I, Matrix, Rational, Symbol, cos, exp, pi, sin, sqrt
+
+from fastpicard import PoissonSeries, new_integrate
+from tests.oracles import closeness, plain_expression, plain_integral, quadrature, same_tree, vanishes
+from tests.strategies import VALUES, a, b, c, expressions, phi, plain_expressions, plain_series, rationals, t, t0, w
+
+
+@given(plain_series(most_power=6, most=4))
+def test_integrals_are_those_of_the_articles_recursion(series):
+    """(8) and (9) on a plain dictionary of Fractions, with the constant that makes them vanish at 0."""
+    assert same_tree(new_integrate(plain_expression(series), t), plain_expression(plain_integral(series)))
+
+
+@given(
+    st.integers(0, 100),
+    st.sampled_from([Fraction(1), Fraction(-3), Fraction(7, 5), Fraction(1, 9), Fraction(20)]),
+    st.sampled_from(["cos", "sin"]),
+)
+def test_powers_up_to_a_hundred_are_integrated_exactly(r, q, kind):
+    """t**100 cos(q t): every coefficient by the recursion, for frequencies of either sign."""
+    function = {"cos": cos, "sin": sin}[kind]
+    sign = -1 if q < 0 and kind == "sin" else 1
+    expected = plain_expression(plain_integral({(r, abs(q), kind, (0, 0)): Fraction(sign)}))
+
+    assert new_integrate(t**r * function(Rational(q) * t), t) == expected
+
+
+@given(expressions, rationals, rationals)
+def test_definite_integrals_add_up(x, lower, upper):
+    """From lower to upper = from 0 to upper less from 0 to lower; reversed limits change the sign."""
+    there, back = new_integrate(x, (t, lower, upper)), new_integrate(x, (t, upper, lower))
+    primitive = PoissonSeries(x, t).integrate()
+
+    assert sympy.expand(there + back) == 0
+    assert PoissonSeries(there, t) == PoissonSeries(primitive(upper), t) - primitive(lower)
+
+
+@given(plain_expressions, rationals)
+def test_a_symbolic_limit_may_be_replaced_by_its_value(x, value):
+    """Integrating up to u and then putting u = value is integrating up to the value."""
+    u = Symbol("u")
+    found = new_integrate(x, (t, t0, u)).subs({u: value, t0: 1})
+
+    assert sympy.expand(found - new_integrate(x, (t, 1, value))) == 0
+
+
+@pytest.mark.parametrize(
+    "x",
+    [
+        t**3 * cos(2 * t),
+        t * sin(t / 2),
+        a * t + b * cos(t),
+        sin(t) * cos(3 * t),
+        t**2 * exp(I * t) + t**2 * exp(-I * t),
+        sin(t + 1),
+        cos(pi * t),
+        t * cos(sqrt(2) * t),
+    ],
+    ids=str,
+)
+def test_integrals_differ_from_sympys_by_no_more_than_a_constant(x):
+    """SymPy integrates the small ones; ours is its primitive less the value at 0."""
+    theirs = sympy.integrate(sympy.expand(x), t)
+
+    assert vanishes(new_integrate(x, t) - theirs + theirs.subs(t, 0))
+
+
+@pytest.mark.parametrize(
+    "x, lower, upper",
+    [
+        (t**4 * cos(3 * t), 0, 2 * pi),
+        (t**2 * sin(w * t + phi), Rational(-1, 2), 3),
+        (a * t * cos(t) ** 3, 3, 1),
+        (cos(sqrt(2) * t) * cos(t), 0, 10),
+        (t**3 * cos(t * (w - 1)) / (b + c), -2, 2),
+        (sin(100 * t), 0, 1),
+        (t**9 * sin(t / 7), 0, 5),
+        (cos(t - t0) * t, t0, pi),
+        (exp(I * t) + exp(-I * t), -1, 1),
+    ],
+    ids=str,
+)
+def test_definite_integrals_agree_with_quadrature(x, lower, upper):
+    """Thirty digits by mpmath."""
+    found = new_integrate(x, (t, lower, upper)).subs(VALUES)
+    expected = quadrature(
+        sympy.expand(x.subs(VALUES)).rewrite(cos).simplify() if x.has(I) else x.subs(VALUES),
+        t,
+        sympy.S(lower).subs(VALUES),
+        sympy.S(upper).subs(VALUES),
+    )
+
+    assert closeness(str(sympy.N(found, 40, maxn=1000)), expected) < mpmath.mpf(10) ** -28
+
+
+def test_a_frequency_that_becomes_zero_afterwards_is_the_limit():
+    """I[t**r cos(q t)] at q -> 0: the generic result tends to the special one; put in first it is exact."""
+    q = Symbol("q")
+    for r in range(4):
+        generic = new_integrate(t**r * cos(q * t), t)
+        assert sympy.limit(generic.subs(t, 2), q, 0) == new_integrate(t**r, (t, 0, 2))
+        assert new_integrate((t**r * cos(q * t)).subs(q, 0), t) == t ** (r + 1) / (r + 1)
+        assert new_integrate((t**r * sin(q * t)).subs(q, 0), t) == 0
+
+
+def test_the_antiderivative_of_sin_holds_the_constant_of_the_article():
+    """I[sin 2t] = 1/2 - cos(2t)/2; the constant makes it vanish at 0."""
+    assert new_integrate(sin(2 * t), t) == Rational(1, 2) - cos(2 * t) / 2
+    assert new_integrate(t * sin(t), t) == sin(t) - t * cos(t)
+    assert new_integrate(0, t) == 0
+    assert new_integrate(3, t) == 3 * t
+
+
+@pytest.mark.parametrize("upper", [t, pi, 0, w, t0 + 1, Rational(7, 3), sqrt(2), 2 * pi * w], ids=str)
+def test_limits_may_be_numbers_symbols_and_the_variable_itself(upper):
+    """The variable of integration is bound: as a limit t is another t."""
+    assert vanishes(new_integrate(a * cos(t) + t, (t, 0, upper)) - a * sin(upper) - upper**2 / 2)
+    assert vanishes(new_integrate(a * cos(t) + t, (t, upper, upper)))
+
+
+def test_matrices_are_integrated_entry_by_entry():
+    """The shape and the type of the matrix stay."""
+    M = Matrix([[cos(t), a], [t, 0]])
+
+    assert new_integrate(M, t) == Matrix([[sin(t), a * t], [t**2 / 2, 0]])
+    assert new_integrate(M.as_immutable(), (t, 0, pi)) == Matrix([[0, pi * a], [pi**2 / 2, 0]])
+
+
+@given(st.integers(1, 6), st.integers(0, 5))
+def test_the_same_integral_twice_is_the_same(q, r):
+    """What is remembered does not change: exact and dyadic frequencies have keys of their own."""
+    exact, dyadic = t**r * cos(q * t / 10), t**r * cos(q * 0.1 * t)
+
+    assert new_integrate(exact, t) == new_integrate(exact, t)
+    assert PoissonSeries(dyadic, t).integrate().diff() == PoissonSeries(t**r * cos(Rational(q * 0.1) * t), t)

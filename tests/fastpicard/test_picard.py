@@ -1,0 +1,373 @@
+"""Picard iterates: the definition, the increments, another origin of time, and the true solution."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, strategies as st
+from sympy import Matrix, Rational, S, Symbol, cos, pi, sin, sqrt
+
+from fastpicard import FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard
+from fastpicard.matrix import read_matrix
+from fastpicard.picard import SeriesIncrements, first_increments, identity_columns
+from tests.oracles import (
+    distance,
+    plain_expression,
+    plain_picard,
+    same_tree,
+    true_fundamental_matrix,
+    truncation_bound,
+    vanishes,
+    within,
+)
+from tests.strategies import (
+    VALUES,
+    a,
+    b,
+    frequencies,
+    matrices,
+    phases,
+    plain_matrices,
+    plain_times,
+    small_integers,
+    t,
+    t0,
+    vectors,
+    w,
+)
+
+MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])
+# No symmetry: sines and cosines, rational frequencies, a phase, damping.
+GENERAL = Matrix(
+    [[Rational(1, 3) * sin(t), 1, 0], [a * cos(t / 2) - b, 2, sin(3 * t / 2)], [b, cos(t + Rational(1, 3)), -1]]
+)
+orders = st.integers(0, 3)
+
+
+# -- the definition ------------------------------------------------------------------
+
+
+@given(plain_matrices(2), st.lists(small_integers, min_size=2, max_size=2), orders)
+def test_iterates_are_those_of_the_definition_on_plain_dictionaries(P, x0, n):
+    """x0 + I[P x_{n-1}] with Fractions, no increments, no common denominators: the same trees."""
+    system = Matrix([[plain_expression(entry) for entry in row] for row in P])
+    found = fast_picard(system, t, x0, n).as_matrix()
+    expected = [plain_expression(entry) for entry in plain_picard(P, list(map(Fraction, x0)), n)]
+
+    assert all(same_tree(x, y) for x, y in zip(found, expected))
+
+
+@given(matrices(2), vectors, st.integers(1, 4))
+def test_the_derivative_of_an_iterate_is_p_times_the_one_before(P, x0, n):
+    """X_n' = P X_{n-1} exactly, and X_n(0) = x0; P X is not X P for matrices without symmetry."""
+    now, before = fast_picard(P, t, x0, n), fast_picard(P, t, x0, n - 1)
+
+    assert now.series.diff() == read_matrix(P, t) @ before.series
+    assert now(0) == Matrix(x0)
+
+
+@given(matrices(2, rates=frequencies, angles=phases), st.integers(1, 2))
+def test_the_law_holds_for_every_kind_of_frequency_and_phase(P, n):
+    """Irrational and symbolic frequencies, phases: Phi_n' = P Phi_{n-1}, Phi_n(0) = 1."""
+    now, before = FundamentalMatrix(P, t, n), FundamentalMatrix(P, t, n - 1)
+
+    assert now.series.diff() == read_matrix(P, t) @ before.series
+    assert all(PoissonSeries(now[i, j](0), t) == int(i == j) for i in range(2) for j in range(2))
+
+
+@given(matrices(3), st.integers(1, 2))
+def test_the_law_holds_for_three_unknowns(P, n):
+    """Nine entries, no two alike."""
+    now, before = FundamentalMatrix(P, t, n), FundamentalMatrix(P, t, n - 1)
+
+    assert now.series.diff() == read_matrix(P, t) @ before.series
+
+
+@given(matrices(2), vectors, orders)
+def test_iterates_are_columns_of_the_fundamental_matrix(P, x0, n):
+    """x_n = Phi_n x0."""
+    assert (
+        Matrix(fast_picard(P, t, x0, n).as_matrix()) == (FundamentalMatrix(P, t, n).as_matrix() * Matrix(x0)).expand()
+    )
+
+
+@given(matrices(1, most=2), st.integers(0, 5))
+def test_scalar_iterates_are_sections_of_the_exponential_series(P, n):
+    """x' = p x: X_n = sum_{k<=n} I[p]**k / k!."""
+    exponent = PoissonSeries(P[0, 0], t).integrate()
+    series = sum((exponent**k * Rational(1, sympy.factorial(k)) for k in range(n + 1)), PoissonSeries(0, t))
+
+    assert fast_picard(P, t, [1], n)[0, 0] == series
+
+
+# -- increments -------------------------------------------------------------------------
+
+
+@given(matrices(2), st.integers(0, 4))
+def test_increments_add_up_to_the_iterate(P, n):
+    """Phi_n = I_0 + ... + I_n, I_0 = 1, I_{k+1}' = P I_k."""
+    Phi, system = FundamentalMatrix(P, t, n), read_matrix(P, t)
+    total = Phi.increment(0)
+    for k in range(1, n + 1):
+        total = total + Phi.increment(k)
+        assert Phi.increment(k).diff() == system @ Phi.increment(k - 1)
+
+    assert Phi.series == total
+    assert Phi.increment(0).as_matrix() == sympy.eye(2)
+
+
+@given(matrices(2), st.integers(0, 5), st.integers(0, 5))
+def test_going_on_from_an_iterate_gives_what_a_fresh_start_gives(P, n, m):
+    """to_order up and down, with common multiples of the frequencies that change on the way."""
+    there = FundamentalMatrix(P, t, n).to_order(m)
+
+    assert there.series == FundamentalMatrix(P, t, m).series
+    assert (there.n, there.shape) == (m, (2, 2))
+
+
+@given(matrices(2), vectors, st.lists(st.integers(0, 6), min_size=1, max_size=3))
+def test_any_way_to_an_order_ends_in_the_same_iterate(P, x0, way):
+    """Several changes of order in a row; trees, not only values."""
+    iterate = fast_picard(P, t, x0, 2)
+    for n in way:
+        iterate = iterate.to_order(n)
+
+    assert iterate.as_matrix() == fast_picard(P, t, x0, way[-1]).as_matrix()
+
+
+@given(matrices(2), st.integers(0, 4))
+def test_the_engine_in_integers_agrees_with_the_engine_in_series(P, n):
+    """Two routes to every increment: packed integers, and products and integrals of series."""
+    system = read_matrix(P, t)
+    packed = first_increments(system, identity_columns(2), n)
+    plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(n)
+
+    assert not isinstance(packed, SeriesIncrements)
+    for k in range(n + 1):
+        for i in range(2):
+            for j in range(2):
+                assert PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(
+                    plain.entry(k, i, j), t
+                )
+
+
+@pytest.mark.parametrize(
+    "P",
+    [
+        GENERAL,
+        GENERAL.subs(t, 3 * w * t),
+        GENERAL.subs(t, sqrt(2) * t),
+        GENERAL.subs({a: a / b, b: pi}),
+        GENERAL.subs(a, sqrt(a)),
+        GENERAL.subs({a: sqrt(2), b: sqrt(6)}),
+        GENERAL.subs(b, 1 / (a + b)),
+    ],
+    ids=str,
+)
+def test_both_engines_agree_where_coefficients_are_unusual(P):
+    """A symbolic or irrational unit of frequency, roots, quotients, negative powers."""
+    system = read_matrix(P, t)
+    packed = first_increments(system, identity_columns(3), 3)
+    plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(3)
+
+    assert not isinstance(packed, SeriesIncrements)
+    assert all(
+        PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(plain.entry(k, i, j), t)
+        for k in range(4)
+        for i in range(3)
+        for j in range(3)
+    )
+
+
+# -- another origin of time ----------------------------------------------------------------
+
+
+@given(matrices(2), vectors, st.sampled_from([S.One, pi, t0, Rational(-3, 2), t0 + pi, 2 * t0]), st.integers(0, 2))
+def test_iterates_from_another_time_start_there_and_obey_the_law(P, x0, origin, n):
+    """X_{n+1}' = P X_n and X_n(t0) = x0, for numbers, multiples of pi and symbols."""
+    before, now = fast_picard(P, t, x0, n, origin), fast_picard(P, t, x0, n + 1, origin)
+
+    assert now.series.diff() == read_matrix(P, t) @ before.series
+    assert all(PoissonSeries(now[i, 0](origin), t) == x0[i] for i in range(2))
+
+
+@given(matrices(2, rates=st.just(S.Zero)), st.integers(0, 4))
+def test_autonomous_systems_know_only_the_time_since_the_start(P, n):
+    """Phi_n(t; t0) = Phi_n(t - t0) for constant P."""
+    shifted, plain = FundamentalMatrix(P, t, n, t0), FundamentalMatrix(P, t, n)
+
+    assert (shifted.as_matrix() - plain(t - t0)).expand() == sympy.zeros(2)
+
+
+@given(matrices(2), plain_times, st.sampled_from([Rational(1, 2), Rational(-2), pi]))
+def test_shifting_the_system_shifts_the_iterate(P, time, origin):
+    """Phi_n(t; t0) of P(t) is Phi_n(t - t0; 0) of P(t + t0), in thirty digits."""
+    here = FundamentalMatrix(P, t, 3, origin).evaluate(time, VALUES, 30)
+    there = FundamentalMatrix(P.subs(t, t + origin), t, 3).evaluate(time - origin, VALUES, 30)
+
+    assert distance(here, there) <= mpmath.mpf(10) ** -25 * (1 + mpmath.mnorm(here, 1))
+
+
+@pytest.mark.parametrize("origin", [1, pi, t0, Rational(-7, 3)], ids=str)
+def test_the_symbolic_origin_may_be_replaced_by_its_value(origin):
+    """Phi_n(t; t0) with t0 put in is Phi_n(t; value)."""
+    symbolic = FundamentalMatrix(GENERAL, t, 2, t0).as_matrix().subs(t0, origin)
+
+    assert all(vanishes(x - y) for x, y in zip(symbolic, FundamentalMatrix(GENERAL, t, 2, origin).as_matrix()))
+
+
+# -- the true solution -----------------------------------------------------------------------
+
+
+@given(matrices(2), st.sampled_from([Rational(1, 2), Rational(-1, 3), Rational(1)]))
+def test_the_determinant_obeys_liouville_to_the_order_of_truncation(P, time):
+    """det Phi_n = exp(I[tr P]) but for terms of the order n + 1 in P: exactly none of lower order.
+
+    P is scaled by a symbol e, so the order in P is the degree in e.
+    """
+    e, n = Symbol("e"), 2
+    determinant = FundamentalMatrix(P * e, t, n).series
+    found = determinant[0, 0] * determinant[1, 1] - determinant[0, 1] * determinant[1, 0]
+    exponent = PoissonSeries(P.trace() * e, t).integrate()
+    expected = sum((exponent**k * Rational(1, sympy.factorial(k)) for k in range(n + 1)), PoissonSeries(0, t))
+    difference = (found - expected)(time)
+
+    assert all(sympy.expand(difference).coeff(e, k).expand() == 0 for k in range(n + 1))
+
+
+TRUE = {
+    "general": (GENERAL, Rational(3, 2)),
+    "mathieu": (MATHIEU, pi),
+    "backwards": (GENERAL, Rational(-1)),
+    "symbolic unit": (GENERAL.subs(t, w * t), Rational(1, 2)),
+    "incommensurate": (Matrix([[cos(t), sin(sqrt(2) * t)], [a, b * t]]), S.One),
+    "phases": (Matrix([[0, sin(2 * t + 1)], [cos(pi * t) - 1, a]]), Rational(4, 3)),
+}
+
+
+@pytest.mark.parametrize("name", TRUE)
+@pytest.mark.parametrize("n", [3, 7])
+def test_iterates_approach_the_solution_as_the_classical_bound_says(name, n):
+    """|Phi - Phi_n| <= sum_{k>n} (Pbar T)**k / k! entrywise; Phi from Taylor's method in balls."""
+    P, end = TRUE[name]
+    P = P.subs(VALUES)
+    found = FundamentalMatrix(P, t, n).evaluate(end, digits=40)
+    truth, bound = true_fundamental_matrix(P, t, 0, end, digits=40), truncation_bound(P, t, end, n)
+
+    assert within(found, truth, bound, mpmath.mpf(10) ** -28)
+
+
+def test_a_high_order_reaches_the_solution_of_an_unsymmetric_system():
+    """Twenty digits of a 3 x 3 matrix at n = 28, and from another start at n = 16 what the bound allows."""
+    P = GENERAL.subs(VALUES).subs(cos(t + Rational(1, 3)), cos(t))
+    found, truth = (
+        FundamentalMatrix(P, t, 28).evaluate(S.One / 2, digits=30),
+        true_fundamental_matrix(P, t, 0, S.One / 2),
+    )
+    later, there = FundamentalMatrix(P, t, 12, 1).evaluate(2, digits=30), true_fundamental_matrix(P, t, 1, 2)
+    bound = truncation_bound(P, t, 1, 12)
+
+    assert distance(found, truth) < mpmath.mpf(10) ** -20
+    assert within(later, there, bound, mpmath.mpf(10) ** -20)
+
+
+# -- the plain definition by SymPy ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "P, x0, n",
+    [(MATHIEU, [1, -2], 2), (Matrix([[sin(t)]]), [1], 3), (Matrix([[a, 1], [0, cos(t)]]), [1, b], 2)],
+    ids=str,
+)
+@pytest.mark.parametrize("origin", [0, 1, t0], ids=str)
+def test_the_plain_definition_agrees_with_the_fast_route(P, x0, n, origin):
+    """SymPy's own integrals, for orders that they reach."""
+    slow = picard(lambda s, x: P.subs(t, s) * x, t, x0, n, origin)
+
+    assert all(vanishes(x - y) for x, y in zip(slow, fast_picard(P, t, x0, n, origin).as_matrix()))
+
+
+def test_the_plain_definition_takes_any_right_hand_side():
+    """x' = x**2: 1, 1 + t, 1 + t + t**2 + t**3/3; and an integral that SymPy cannot do stays one."""
+    assert picard(lambda s, x: [x[0] ** 2], t, [1], 2) == Matrix([1 + t + t**2 + t**3 / 3])
+    assert picard(lambda s, x: [x[0] ** 2], t, [1], 0) == Matrix([1])
+    kept = picard(lambda s, x: [sin(x[0] ** s + s)], t, [2], 1)
+    assert kept.has(sympy.Integral)
+
+
+# -- what one can do with it -----------------------------------------------------------------------
+
+
+@given(matrices(2), plain_times)
+def test_numbers_are_those_of_the_exact_matrix(P, time):
+    """Fifteen digits against evalf of the exact value, and floats are the rounded digits."""
+    Phi = FundamentalMatrix(P, t, 2)
+    exact = Phi(time).subs(VALUES)
+    found = Phi.evaluate(time, VALUES, 20)
+
+    assert all(
+        abs(found[i, j] - mpmath.mpf(str(sympy.N(exact[i, j], 25)))) < 1e-14 * (1 + abs(found[i, j]))
+        for i in range(2)
+        for j in range(2)
+    )
+    assert Phi.evaluate(time, VALUES).tolist() == [[float(found[i, j]) for j in range(2)] for i in range(2)]
+
+
+def test_a_matrix_may_be_a_function_lists_or_any_matrix():
+    """A callable of one argument as in the article; nested lists; immutable and sparse matrices."""
+    expected = FundamentalMatrix(MATHIEU, t, 3).as_matrix()
+    for P in (
+        lambda s: MATHIEU.subs(t, s),
+        MATHIEU.tolist(),
+        MATHIEU.as_immutable(),
+        sympy.SparseMatrix(MATHIEU),
+        read_matrix(MATHIEU, t),
+    ):
+        assert FundamentalMatrix(P, t, 3).as_matrix() == expected
+
+
+def test_floats_in_the_matrix_are_the_dyadic_numbers_they_are():
+    """0.5 is 1/2; 0.1 is not 1/10."""
+    assert fast_picard([[0.5]], t, [1], 2).as_matrix() == fast_picard([[Rational(1, 2)]], t, [1], 2).as_matrix()
+    assert fast_picard([[0.1]], t, [1], 2).as_matrix() == fast_picard([[Rational(0.1)]], t, [1], 2).as_matrix()
+    assert fast_picard([[0.1]], t, [1], 2).as_matrix() != fast_picard([[Rational(1, 10)]], t, [1], 2).as_matrix()
+
+
+@pytest.mark.parametrize(
+    "name", ["s", "tau", "x", "y", "u", "r", "n", "pi", "I", "E", "S", "_s", "t0", "lambda", "cos"]
+)
+def test_parameters_may_have_any_name(name):
+    """Also those a program might use inside."""
+    p = Symbol(name)
+    found = fast_picard([[p * cos(t), p], [0, sin(t)]], t, [p, 1], 3)
+
+    assert found.series.diff() == read_matrix([[p * cos(t), p], [0, sin(t)]], t) @ found.to_order(2).series
+    assert np.isfinite(found.evaluate(1, {p: 2})).all()
+
+
+def test_zero_systems_and_order_zero_stay_where_they_start():
+    """P = 0 and n = 0 give x0; so does a system that never reaches an unknown."""
+    assert fast_picard(sympy.zeros(2), t, [a, 1], 7).as_matrix() == Matrix([a, 1])
+    assert fast_picard(MATHIEU, t, [a, 1], 0).as_matrix() == Matrix([a, 1])
+    assert fast_picard(MATHIEU, t, [0, 0], 5).as_matrix() == sympy.zeros(2, 1)
+    assert FundamentalMatrix([[0, cos(t)], [0, 0]], t, 9).as_matrix() == Matrix([[1, sin(t)], [0, 1]])
+
+
+def test_powers_of_the_time_in_the_matrix_are_allowed():
+    """Airy's equation: y'' = t y by the series route."""
+    found = FundamentalMatrix([[0, 1], [t, 0]], t, 6).as_matrix()
+
+    assert found[0, 0] == 1 + t**3 / 6 + t**6 / 180 + t**9 / 12960
+    assert found[0, 1] == t + t**4 / 12 + t**7 / 504
+
+
+def test_iterates_print_themselves_short():
+    """One line; LaTeX while a person could read it."""
+    Phi = FundamentalMatrix(MATHIEU, t, 20)
+
+    assert repr(Phi) == "<FundamentalMatrix of order 20, shape 2 x 2, in t>"
+    assert isinstance(Phi.to_order(2), PicardIterate)
+    assert "order 20" in Phi._repr_latex_()
+    assert r"\begin{matrix}" in Phi.to_order(2)._repr_latex_()

@@ -1,0 +1,336 @@
+"""Poisson series: laws of a commutative differential ring, equality, values and pickles."""
+
+import pickle
+
+import mpmath
+import pytest
+import sympy
+from hypothesis import given
+from sympy import I, Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt
+
+from fastpicard import PoissonSeries
+from tests.oracles import closeness, value_by_sympy, vanishes
+from tests.strategies import (
+    VALUES,
+    a,
+    b,
+    c,
+    expressions,
+    nonzero_rationals,
+    phi,
+    plain_expressions,
+    plain_times,
+    rationals,
+    short_expressions,
+    t,
+    w,
+)
+
+
+def of(expression):
+    """The series of an expression in t."""
+    return PoissonSeries(expression, t)
+
+
+series = expressions.map(of)
+short = short_expressions.map(of)
+plain = plain_expressions.map(of)
+zero, one = of(0), of(1)
+
+
+# -- ring ------------------------------------------------------------------------
+
+
+@given(series, series, series)
+def test_addition_is_associative_and_commutative(f, g, h):
+    """(f + g) + h = f + (g + h), f + g = g + f, f + 0 = f, f - f = 0."""
+    assert (f + g) + h == f + (g + h)
+    assert f + g == g + f
+    assert f + 0 == f
+    assert not f - f
+
+
+@given(series, series)
+def test_multiplication_is_commutative_with_one(f, g):
+    """f g = g f, 1 f = f, 0 f = 0."""
+    assert f * g == g * f
+    assert f * 1 == f
+    assert f * zero == zero
+
+
+@given(short, short, short)
+def test_multiplication_is_associative(f, g, h):
+    """(f g) h = f (g h): product to sum in either order."""
+    assert (f * g) * h == f * (g * h)
+
+
+@given(short, series, series)
+def test_multiplication_distributes_over_addition(f, g, h):
+    """f (g + h) = f g + f h."""
+    assert f * (g + h) == f * g + f * h
+
+
+@given(short_expressions, short_expressions)
+def test_reading_is_a_homomorphism(x, y):
+    """The series of a product or sum of expressions is that of the series, whichever side multiplies."""
+    assert of(x * y) == of(x) * of(y)
+    assert of(x + y) == of(x) + of(y)
+    assert of(x) - y == of(x - y) == x - of(y)
+
+
+@given(plain, plain)
+def test_equal_series_have_equal_hashes_whatever_made_them(f, g):
+    """f g and g f, f + g and g + f are one value, also as keys."""
+    assert hash(f * g) == hash(g * f)
+    assert hash(f + g) == hash(g + f)
+    assert len({f * g, g * f}) == 1
+    assert (f == g) == (not f - g)
+
+
+@given(series, rationals, rationals)
+def test_scaling_is_multiplication_by_a_constant(f, x, y):
+    """(x + y) f = x f + y f; scale(x) = x f."""
+    assert f.scale(x) + f.scale(y) == f.scale(x + y)
+    assert f.scale(x) == f * x == x * f
+    assert f.scale(a / b) == a / b * f
+
+
+@given(short)
+def test_powers_are_repeated_products(f):
+    """f**0 = 1, f**2 = f f."""
+    assert f**0 == one
+    assert f**1 == f
+    assert f**2 == f * f
+
+
+# -- calculus ----------------------------------------------------------------------
+
+
+@given(series, series)
+def test_the_derivative_is_linear_and_obeys_the_product_rule(f, g):
+    """(f + g)' = f' + g', (f g)' = f' g + f g'."""
+    assert (f + g).diff() == f.diff() + g.diff()
+    assert (f * g).diff() == f.diff() * g + f * g.diff()
+
+
+@given(expressions)
+def test_the_derivative_is_sympys(x):
+    """SymPy differentiates the same expression to the same series."""
+    assert of(x).diff() == of(sympy.diff(x, t))
+
+
+@given(series)
+def test_the_derivative_undoes_the_integral(f):
+    """d/dt I[f] = f."""
+    assert f.integrate().diff() == f
+
+
+@given(series)
+def test_the_integral_undoes_the_derivative_but_for_the_value_at_0(f):
+    """I[f'] = f - f(0)."""
+    assert f.diff().integrate() == f - f(0)
+
+
+@given(series)
+def test_the_integral_is_zero_at_0(f):
+    """I[f](0) = 0: exactly, as a series."""
+    assert not of(f.integrate()(0))
+
+
+@given(series, series, rationals, rationals)
+def test_the_integral_is_linear(f, g, x, y):
+    """I[x f + y g] = x I[f] + y I[g]; equality, not closeness."""
+    assert (f.scale(x) + g.scale(y)).integrate() == f.integrate().scale(x) + g.integrate().scale(y)
+
+
+@given(short, short)
+def test_integration_by_parts(f, g):
+    """I[f g'] = f g - f(0) g(0) - I[f' g]."""
+    assert (f * g.diff()).integrate() == f * g - of(f(0)) * of(g(0)) - (f.diff() * g).integrate()
+
+
+# -- SymPy and back ------------------------------------------------------------------
+
+
+@given(expressions)
+def test_series_come_back_from_sympy_as_they_went(x):
+    """PoissonSeries(f.as_expr()) = f, and the expression means what was read."""
+    f = of(x)
+
+    assert of(f.as_expr()) == f
+    assert sympy.sympify(f) == f.as_expr()
+
+
+@given(expressions, plain_times)
+def test_the_expression_has_the_value_of_what_was_read(x, time):
+    """Forty digits of both at one time and set of parameters, through SymPy alone."""
+    at = {t: time, **VALUES}
+
+    assert abs(value_by_sympy(of(x).as_expr(), at) - value_by_sympy(x, at)) < Rational(1, 10**30)
+
+
+@given(series)
+def test_pickles_come_back_equal(f):
+    """A series survives the way to another process."""
+    again = pickle.loads(pickle.dumps(f))
+
+    assert again == f
+    assert again.t == f.t
+
+
+# -- values --------------------------------------------------------------------------
+
+
+@given(expressions, plain_times)
+def test_digits_agree_with_evalf(x, time):
+    """Thirty digits asked for, thirty digits as SymPy computes them."""
+    f = of(x)
+    expected = value_by_sympy(x, {t: time, **VALUES}, 45)
+
+    assert closeness(f.evaluate(time, VALUES, 30), str(expected)) < mpmath.mpf(10) ** -29
+
+
+@given(expressions, plain_times)
+def test_floats_are_the_rounded_digits(x, time):
+    """digits=None is the float nearest to the exact value."""
+    f = of(x)
+
+    assert f.evaluate(time, VALUES) == float(f.evaluate(time, VALUES, 40))
+
+
+@given(plain_expressions, plain_times)
+def test_the_value_at_a_time_is_substitution(x, time):
+    """f(time) is the expression with the time put in; at 0 and at t itself too."""
+    f = of(x)
+
+    assert sympy.expand(f(time) - x.subs(t, time)) == 0 or vanishes(f(time) - x.subs(t, time))
+    assert f(t) == f.as_expr()
+
+
+@given(series, nonzero_rationals)
+def test_shifting_the_time_forth_and_back_changes_nothing(f, by):
+    """f(t + s) as a series, read again and shifted by -s."""
+    assert of(of(f(t + by))(t - by)) == f
+
+
+# -- examples ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "left, right",
+    [
+        (cos(t) ** 2 + sin(t) ** 2, 1),
+        (exp(I * t) + exp(-I * t), 2 * cos(t)),
+        ((exp(I * t) - exp(-I * t)) / (2 * I), sin(t)),
+        (exp(I * (w * t + phi)) * exp(-I * w * t), cos(phi) + I * sin(phi)),
+        (cos(t + pi / 2), -sin(t)),
+        (sin(t - pi / 3), sin(t) / 2 - sqrt(3) * cos(t) / 2),
+        (cos(-3 * t + phi), cos(3 * t - phi)),
+        (sin(phi - w * t), -sin(w * t - phi)),
+        (cos((w - 1) * t) - cos(t - w * t), 0),
+        (cos(t * (1 + w)), cos(t) * cos(w * t) - sin(t) * sin(w * t)),
+        (sin(2 * (t + phi)), 2 * sin(t + phi) * cos(t + phi)),
+        (sqrt(2) * sqrt(6) * cos(t), 2 * sqrt(3) * cos(t)),
+        (cos(sqrt(2) * t) * cos(sqrt(8) * t), cos(sqrt(2) * t) / 2 + cos(3 * sqrt(2) * t) / 2),
+        ((b + c) / (b + c) * t, t),
+        (t / (b + c) - t / (c + b), 0),
+        (b * t / (b + c) + c * t / (b + c), t),
+        (1 / (1 + sqrt(2)) * cos(t), (sqrt(2) - 1) * cos(t)),
+        ((a + b * cos(t)) ** 3, sympy.expand((a + b * cos(t)) ** 3)),
+        (t**2 * t**3 / t**0, t**5),
+        (S(0.5) * cos(t), cos(t) / 2),
+        (cos(0.1 * t), cos(Rational(0.1) * t)),
+        (cos(t + 2 * pi), cos(t)),
+        (sin(7 * pi / 2 - t), -cos(t)),
+    ],
+    ids=str,
+)
+def test_equal_expressions_are_equal_series(left, right):
+    """Identities that ``==`` must see, for it is mathematical equality."""
+    assert of(left) == of(right)
+    assert of(left) == right
+    assert not of(left) - of(right)
+
+
+@pytest.mark.parametrize(
+    "left, right",
+    [
+        (cos(t), sin(t)),
+        (cos(t), cos(2 * t)),
+        (a, b),
+        (cos(w * t), cos(t)),
+        (S(0.1), Rational(1, 10)),
+        (t, t**2),
+        (sqrt(2) * t, sqrt(3) * t),
+        (cos(t + phi), cos(t)),
+        (1 / (b + c), 1 / (b - c)),
+    ],
+    ids=str,
+)
+def test_different_expressions_are_different_series(left, right):
+    """And ``==`` says no where the functions differ, be it by a rounding error."""
+    assert of(left) != of(right)
+    assert of(left) - right
+
+
+def test_series_are_immutable():
+    """The modes one gets are a copy."""
+    f = of(cos(t))
+    f.modes.clear()
+
+    assert f == of(cos(t))
+    with pytest.raises(AttributeError):
+        f.t = a
+
+
+def test_parameters_are_all_symbols_but_the_time():
+    """In coefficients, frequencies and phases."""
+    assert of(a * t * cos(w * t + phi) / (b + c)).free_symbols == {a, w, phi, b, c}
+    assert of(3 * t).free_symbols == set()
+
+
+def test_a_series_scales_a_matrix_as_the_expression_it_is():
+    """SymPy asks for the expression."""
+    assert of(cos(t)) * Matrix([a, t]) == Matrix([a * cos(t), t * cos(t)])
+
+
+def test_printing_is_short_where_the_series_is_long():
+    """A few terms are shown, many are counted; LaTeX likewise."""
+    long = of(sum(Symbol(f"a{k}") * cos(k * t) for k in range(1, 80)))
+
+    assert repr(of(a * cos(t) + t)) == "PoissonSeries(a*cos(t) + t, t)"
+    assert str(of(a * cos(t) + t)) == "a*cos(t) + t"
+    assert "79 terms" in repr(long) and len(repr(long)) < 100
+    assert of(cos(t))._repr_latex_() == r"$\displaystyle \cos{\left(t \right)}$"
+    assert "79 terms" in long._repr_latex_()
+
+
+@pytest.mark.parametrize(
+    "constant",
+    [
+        sqrt(2),
+        pi,
+        a / b,
+        sqrt(a / b),
+        1 / (b + c),
+        sympy.E,
+        sqrt(3) * pi,
+        sympy.log(2),
+        exp(a),
+        sympy.Abs(a),
+        sympy.Function("f")(a),
+        2**a,
+        sympy.GoldenRatio,
+    ],
+    ids=str,
+)
+def test_constants_come_back_as_what_they_were(constant):
+    """Coefficients free of t pass through untouched, and integrate as constants."""
+    assert of(constant * cos(t)).as_expr() == constant * cos(t)
+    assert of(constant * t).integrate().as_expr() == constant * t**2 / 2
+
+
+def test_a_cosine_free_of_t_is_a_constant_and_also_a_phase():
+    """It comes back as it was beside powers of t; beside a wave the two turn into a sum, so that phases compare equal."""
+    assert of(cos(phi) * t**2).integrate().as_expr() == cos(phi) * t**3 / 3
+    assert of(cos(phi) * cos(t) - sin(phi) * sin(t)) == of(cos(t + phi))
