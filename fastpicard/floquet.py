@@ -78,9 +78,9 @@ class FloquetMatrix:
               found: Increments) -> None:
         self._t, self._n, self._period, self._shape = t, n, period, shape
         self._length, self._increments = length, found
-        self._powers: list[Polynomial] = [{ONE: fmpq(1)}]
-        for _ in range(n):
-            self._powers.append(multiply(self._powers[-1], length))
+        self._powers: list[Polynomial] = [{ONE: fmpq(1)}]  # T**r / r!
+        for r in range(1, n + 1):
+            self._powers.append(multiply(self._powers[-1], {m: c / r for m, c in length.items()}))
         self._entries: dict[tuple[int, int], Modes] = {}
 
     @property

@@ -323,14 +323,15 @@ def function_of(kind: int, r: int) -> tuple[bool, int]:
 
 
 def frozen(modes: Modes, powers: list[Polynomial]) -> Modes:
-    """A series without frequencies at a fixed time whose powers are given: only constants are left."""
-    result: Modes = {}
+    """A series without frequencies at a fixed time ``T``, given ``T**r / r!``: only constants are left."""
+    values: dict[Key, Any] = {}
     for (kind, angle, monomial), f in modes.items():
         for r, c in enumerate(f.coeffs()):
-            if c:
-                sine, sign = function_of(kind, r)
-                for m, value in powers[r].items():
-                    factor, product_monomial = multiply_monomials(monomial, m)
-                    amount = fmpq_poly([c * value * factor * sign / factorial(r)])
-                    add_mode(result, SIN if sine else COS, angle, product_monomial, amount)
-    return result
+            sine, sign = function_of(kind, r)
+            if not c or sine and angle == NO_ANGLE:
+                continue
+            for m, value in powers[r].items():
+                factor, product_monomial = multiply_monomials(monomial, m)
+                key = (SIN if sine else COS, angle, product_monomial)
+                values[key] = values.get(key, 0) + c * value * (sign * factor)
+    return {key: fmpq_poly([value]) for key, value in values.items() if value}

@@ -1,0 +1,74 @@
+"""The exact engine against a bare prototype and against the best peer, as ratios measured in one run.
+
+    python benchmarks/engine.py             # n = 20, 30, 50
+    python benchmarks/engine.py --long      # and n = 100
+
+Every pair is run alternately, several times, and the smallest time of each counts
+(processor time of this process, so that neighbours on the machine matter less).
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from sympy import Matrix, cos, symbols
+
+from fastpicard import FloquetMatrix, FundamentalMatrix
+
+sys.path.insert(0, str(Path(__file__).parent))
+import peer
+import yardstick
+
+t, a, b = symbols("t a b")
+DRIVE = a + b * cos(t)
+MATHIEU = Matrix([[0, 1], [-DRIVE, 0]])
+DOUBLE_ROD = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-18 * DRIVE, 9 * DRIVE, 0, 0], [27 * DRIVE, -24 * DRIVE, 0, 0]])
+
+
+def seconds(work: Callable[[], object]) -> float:
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
+def compare(*works: Callable[[], object], repeat: int) -> list[float]:
+    """The smallest time of each, run alternately."""
+    runs = [[seconds(work) for work in works] for _ in range(repeat)]
+    return [min(column) for column in zip(*runs)]
+
+
+def against_yardstick(orders: list[int]) -> None:
+    print("against the prototype (ratio of times, smaller is better)")
+    print(f"{'problem':12} {'n':>4} {'prototype s':>12} {'Phi_n':>7} {'trace of Phi_n(2 pi)':>21}")
+    for name, P, plain, dim in (("Mathieu", MATHIEU, yardstick.MATHIEU, 2),
+                                ("double rod", DOUBLE_ROD, yardstick.DOUBLE_ROD, 4)):
+        for n in orders:
+            if n > 50 and dim > 2:
+                continue
+            base, phi, trace = compare(lambda: yardstick.fundamental_matrix(plain, dim, n),
+                                       lambda: FundamentalMatrix(P, t, n),
+                                       lambda: FloquetMatrix(P, t, n).trace(), repeat=12 if n < 30 else 3 if n < 100 else 1)
+            print(f"{name:12} {n:4} {base:12.4f} {phi / base:7.2f} {trace / base:21.2f}", flush=True)
+
+
+def against_peer(orders: list[int]) -> None:
+    print("against fmpq_mpoly by hand, Mathieu, both sides merged and reduced (how many times faster, larger is better)")
+    print(f"{'n':>4} {'terms':>8} {'peer s':>9} {'faster':>7}")
+    for n in orders:
+        theirs, ours = compare(lambda: peer.fundamental_matrix(peer.MATHIEU, 2, n),
+                               lambda: FundamentalMatrix(MATHIEU, t, n).series, repeat=12 if n < 30 else 4)
+        count = peer.terms(peer.fundamental_matrix(peer.MATHIEU, 2, n))
+        print(f"{n:4} {count:8} {theirs:9.4f} {theirs / ours:7.2f}", flush=True)
+
+
+def main() -> None:
+    FundamentalMatrix(MATHIEU, t, 3).as_matrix()
+    against_yardstick([20, 30, 50] + [100] * ("--long" in sys.argv))
+    against_peer([20, 30, 50])
+
+
+if __name__ == "__main__":
+    main()
