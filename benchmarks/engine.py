@@ -43,25 +43,33 @@ def compare(*works: Callable[[], object], repeat: int) -> list[float]:
 def against_yardstick(orders: list[int]) -> None:
     print("against the prototype (ratio of times, smaller is better)")
     print(f"{'problem':12} {'n':>4} {'prototype s':>12} {'Phi_n':>7} {'trace of Phi_n(2 pi)':>21}")
-    for name, P, plain, dim in (("Mathieu", MATHIEU, yardstick.MATHIEU, 2),
-                                ("double rod", DOUBLE_ROD, yardstick.DOUBLE_ROD, 4)):
-        for n in orders:
-            if n > 50 and dim > 2:
-                continue
-            base, phi, trace = compare(lambda: yardstick.fundamental_matrix(plain, dim, n),
-                                       lambda: FundamentalMatrix(P, t, n),
-                                       lambda: FloquetMatrix(P, t, n).trace(), repeat=12 if n < 30 else 3 if n < 100 else 1)
-            print(f"{name:12} {n:4} {base:12.4f} {phi / base:7.2f} {trace / base:21.2f}", flush=True)
+    for n in orders:
+        row("Mathieu", n, MATHIEU, yardstick.MATHIEU, 2)
+    for n in orders:
+        if n <= 50:
+            row("double rod", n, DOUBLE_ROD, yardstick.DOUBLE_ROD, 4)
+
+
+def row(name: str, n: int, P: Matrix, plain: dict[tuple[int, int], list[object]], size: int) -> None:
+    base, phi, trace = compare(lambda: yardstick.fundamental_matrix(plain, size, n),
+                               lambda: FundamentalMatrix(P, t, n),
+                               lambda: FloquetMatrix(P, t, n).trace(),
+                               repeat=12 if n < 30 else 4 if n < 100 else 1)
+    print(f"{name:12} {n:4} {base:12.4f} {phi / base:7.2f} {trace / base:21.2f}", flush=True)
 
 
 def against_peer(orders: list[int]) -> None:
-    print("against fmpq_mpoly by hand, Mathieu, both sides merged and reduced (how many times faster, larger is better)")
+    print("against fmpq_mpoly by hand, Mathieu, both sides merged and reduced (times faster, larger is better)")
     print(f"{'n':>4} {'terms':>8} {'peer s':>9} {'faster':>7}")
     for n in orders:
-        theirs, ours = compare(lambda: peer.fundamental_matrix(peer.MATHIEU, 2, n),
-                               lambda: FundamentalMatrix(MATHIEU, t, n).series, repeat=12 if n < 30 else 4)
-        count = peer.terms(peer.fundamental_matrix(peer.MATHIEU, 2, n))
-        print(f"{n:4} {count:8} {theirs:9.4f} {theirs / ours:7.2f}", flush=True)
+        peer_row(n)
+
+
+def peer_row(n: int) -> None:
+    theirs, ours = compare(lambda: peer.fundamental_matrix(peer.MATHIEU, 2, n),
+                           lambda: FundamentalMatrix(MATHIEU, t, n).series, repeat=12 if n < 30 else 4)
+    count = peer.terms(peer.fundamental_matrix(peer.MATHIEU, 2, n))
+    print(f"{n:4} {count:8} {theirs:9.4f} {theirs / ours:7.2f}", flush=True)
 
 
 def main() -> None:

@@ -8,6 +8,7 @@ ways: points by bisection on the eigenvalues of the 4 x 4 matrix, and curves fro
 two Mathieu equations in normal coordinates.  It writes ``docs/images/double_rod.png``.
 """
 
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -62,10 +63,10 @@ def boundary_points(F: FloquetMatrix) -> list[tuple[float, float]]:
     hs, vs = [k / 100 for k in range(11)], [0.1 + 10 * k for k in range(10)]
     points = []
     for x in hs:
-        points += [(x, bisect(lambda y, x=x: grows(x, y), low, high, 0.1)) for low, high in zip(vs, vs[1:])
+        points += [(x, bisect(lambda y, x=x: grows(x, y), low, high, 0.1)) for low, high in pairwise(vs)
                    if grows(x, low) != grows(x, high)]
     for y in vs:
-        points += [(bisect(lambda x, y=y: grows(x, y), low, high, 1e-4), y) for low, high in zip(hs, hs[1:])
+        points += [(bisect(lambda x, y=y: grows(x, y), low, high, 1e-4), y) for low, high in pairwise(hs)
                    if grows(low, y) != grows(high, y)]
     return points
 
@@ -102,14 +103,15 @@ def draw(points: list[tuple[float, float]], modes: object) -> None:
         value = trace(-mu / y**2, mu * x)
         trusted &= remainder(mu / y**2 + mu * x) < 0.01
         stable &= np.abs(value) < 2
-        axes.contour(x, y, np.where(trusted, value, np.nan), levels=[-2, 2], colors=colour, linewidths=1.5, linestyles="-")
+        axes.contour(x, y, np.where(trusted, value, np.nan), levels=[-2, 2], colors=colour, linestyles="-")
         axes.plot([], [], color=colour, label=rf"trace = $\pm 2$, {name}, $\mu$ = {mu:.4f}")
     axes.contourf(x, y, stable & trusted, levels=[0.5, 1.5], colors=["tab:green"], alpha=0.2)
     axes.contourf(x, y, ~trusted, levels=[0.5, 1.5], colors=["0.7"])
     axes.plot(*zip(*points), "k.", markersize=5, label="bisection on the 4 x 4 Floquet matrix")
     axes.fill([], [], color="tab:green", alpha=0.2, label="upright position stable")
     axes.fill([], [], color="0.7", label=f"{ORDER} iterates are not enough here")
-    axes.set(xlabel=r"$h = \epsilon/l$ (amplitude over length)", ylabel=r"$v = \omega_0\sqrt{l/g}$ (dimensionless frequency)",
+    axes.set(xlabel=r"$h = \epsilon/l$ (amplitude over length)",
+             ylabel=r"$v = \omega_0\sqrt{l/g}$ (dimensionless frequency)",
              title="Linear stability of the driven double rod, upside down", xlim=(0, 0.1), ylim=(0, 100))
     axes.legend(loc="upper right", fontsize=9)
     PICTURE.parent.mkdir(exist_ok=True)
