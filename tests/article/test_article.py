@@ -7,7 +7,7 @@ HERE = Path(__file__).parent
 PAGE = HERE.parents[1] / "docs" / "article.rst"
 
 
-def tests_here():
+def names_here():
     """The names of all tests in this directory."""
     return {name for file in HERE.glob("test_*.py")
             for name in re.findall(r"^def (test_\w+)\(", file.read_text(encoding="utf-8"), flags=re.MULTILINE)}
@@ -17,11 +17,11 @@ def test_page_names_only_tests_that_exist():
     """Every test that the page names is here."""
     named = set(re.findall(r"``(test_\w+)``", PAGE.read_text(encoding="utf-8")))
     assert len(named) > 20
-    assert named - tests_here() == set()
+    assert named - names_here() == set()
 
 
 def test_page_names_every_test():
     """Every test of an output of the article is named on the page."""
     page = PAGE.read_text(encoding="utf-8")
-    ours = {name for name in tests_here() if not name.startswith("test_page_")}
+    ours = {name for name in names_here() if not name.startswith("test_page_")}
     assert {name for name in ours if f"``{name}``" not in page} == set()

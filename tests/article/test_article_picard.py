@@ -74,7 +74,7 @@ def pendulum(_time, x):
 def test_out_03():
     """The fourth iterate of the pendulum is what stands under the sine of Out[3], and the fifth is an integral.
 
-    SymPy looks for an antiderivative of that sine for minutes before it gives up.  Here the last sine is therefore
+    SymPy may search many minutes for an antiderivative of that sine.  Here the last sine is therefore
     held as a function of which SymPy knows nothing, so that SymPy sees at once that it cannot be integrated.
     """
     fourth = picard(pendulum, t, [1, 0], 4)[0]
