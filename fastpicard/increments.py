@@ -24,8 +24,8 @@ from typing import Any
 from flint import fmpq_poly, fmpz
 
 from fastpicard.coordinates import Problem, Row, Term
-from fastpicard.modes import COS, SIN, Modes, add_reflected, mask, orient
-from fastpicard.ring import ONE, multiply_monomials
+from fastpicard.modes import COS, SIN, Modes, mask, orient
+from fastpicard.ring import ONE, Monomial, multiply_monomials
 
 Rows = dict[tuple[int, int], Any]  # (kind, angle) -> fmpq_poly
 Entry = dict[int, tuple[Any, Rows]]  # monomial -> (scale, rows times scale)
@@ -217,7 +217,8 @@ def without_frequencies(p: Problem, entry: Entry) -> Entry:
         for (kind, angle), row in rows.items():
             start = p.coordinates.without_frequency(angle)
             _add_rows(collapsed, {(kind, abs(start)): reflected(kind, row) if start < 0 else row})
-        result[monomial] = scale, collapsed
+        result[monomial] = scale, {(kind, start): row if start else mask(kind, row)
+                                   for (kind, start), row in collapsed.items()}
     return result
 
 
@@ -231,12 +232,26 @@ def to_modes(p: Problem, entry: Entry) -> Modes:
         factor, monomial = multiply_monomials(ONE, p.coordinates.monomial(packed))
         factor *= p.weight(packed) / scale
         for (kind, angle), row in rows.items():
-            row = row if rate == 1 else row(stretch)
-            row = row if factor == 1 else row * factor
-            if unit == ONE:
-                add_reflected(modes, kind, *exact_angle(angle), monomial, row)
-                continue
-            for r, value in enumerate(row.coeffs()):
-                gained, product = multiply_monomials(monomial, tuple((g, r * e) for g, e in unit if r))
-                add_reflected(modes, kind, *exact_angle(angle), product, fmpq_poly([0] * r + [value * gained]))
-    return modes
+            if rate != 1:
+                row = row(stretch)
+            if factor != 1:
+                row = row * factor
+            turned, exact = exact_angle(angle)
+            if turned:
+                row = reflected(kind, row)
+            for m, f in _by_monomial(row, monomial, unit):
+                key = (kind, exact, m)
+                old = modes.get(key)
+                modes[key] = f if old is None else old + f
+    return {key: f for key, f in modes.items() if f}
+
+
+def _by_monomial(row: Any, monomial: Monomial, unit: Monomial) -> list[tuple[Monomial, Any]]:
+    """``s**r = unit**r t**r``: one row, or one for each power where the unit of frequency is a symbol."""
+    if unit == ONE:
+        return [(monomial, row)]
+    terms = []
+    for r, value in enumerate(row.coeffs()):
+        gained, product = multiply_monomials(monomial, tuple((g, r * e) for g, e in unit if r))
+        terms.append((product, fmpq_poly([0] * r + [value * gained])))
+    return terms

@@ -36,6 +36,8 @@ from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time,
 from fastpicard.ring import ONE, Polynomial
 from fastpicard.series import PoissonSeries
 
+# Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
+SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)
 
 def check_order(n: Any) -> int:
     """The order of an iterate, an integer from 0 up."""
@@ -88,12 +90,20 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     s = sympy.Dummy("s")
     x = Matrix(start)
     for _ in range(check_order(n)):
-        slope = _slope(f(s, x.subs(t, s)))
+        slope = _slope(f(t, x))
         if slope.shape != x.shape:
             raise BadInputError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "
                                 "Return one component for each unknown.")
-        x = Matrix([start[i] + sympy.integrate(slope[i], (s, t0, t)) for i in range(len(start))])
+        x = Matrix([start[i] + _integral(slope[i].subs(t, s), s, t0, t) for i in range(len(start))])
     return ImmutableMatrix(x)
+
+
+def _integral(integrand: Expr, s: Symbol, lower: Expr, upper: Expr) -> Expr:
+    """SymPy's integral; left unevaluated where a function of a special function occurs, as in Out[3]."""
+    compositions = (f for f in integrand.atoms(sympy.Function) if s in f.free_symbols)
+    if any(argument.has(*SPECIAL) for f in compositions for argument in f.args):
+        return sympy.Integral(integrand, (s, lower, upper))
+    return sympy.integrate(integrand, (s, lower, upper))
 
 
 def _slope(value: Any) -> Matrix:

@@ -34,6 +34,8 @@ ONE: Monomial = ()
 
 _expressions: list[Expr] = []
 _numbers: dict[Expr, int] = {}
+_related: set[int] = set()  # the generators with a relation: primes under a root, and I
+_UNIT = fmpq(1)
 
 
 def generator(expression: Expr) -> int:
@@ -42,6 +44,8 @@ def generator(expression: Expr) -> int:
     if number is None:
         number = _numbers[expression] = len(_expressions)
         _expressions.append(expression)
+        if expression is sympy.I or expression.is_Integer:
+            _related.add(number)
     return number
 
 
@@ -70,13 +74,8 @@ def fraction(value: Any) -> Exponent:
 def _normal(number: int, exponent: Exponent) -> tuple[Any, Exponent]:
     """Apply the generator's relation to one power: ``(rational factor, remaining exponent)``."""
     base = _expressions[number]
-    if base is sympy.I:
-        turns, rest = divmod(exponent, 2)
-        return fmpq((-1) ** int(turns)), rest
-    if base.is_Integer:
-        whole, rest = divmod(exponent, 1)
-        return fmpq(int(base)) ** int(whole), rest
-    return fmpq(1), exponent
+    whole, rest = divmod(exponent, 2 if base is sympy.I else 1)
+    return (fmpq(-1) if base is sympy.I else fmpq(int(base))) ** int(whole), rest
 
 
 @lru_cache(maxsize=1 << 16)
@@ -85,18 +84,15 @@ def multiply_monomials(left: Monomial, right: Monomial) -> tuple[Any, Monomial]:
     exponents = dict(left)
     for number, exponent in right:
         exponents[number] = exponents.get(number, 0) + exponent
-    factor = fmpq(1)
-    product = []
-    for number in sorted(exponents):
-        gained, exponent = _normal(number, exponents[number])
+    factor = _UNIT
+    for number in exponents.keys() & _related:
+        gained, exponents[number] = _normal(number, exponents[number])
         factor *= gained
-        if exponent:
-            product.append((number, _whole(exponent)))
-    return factor, tuple(product)
+    return factor, tuple(sorted((number, _whole(exponent)) for number, exponent in exponents.items() if exponent))
 
 
 def _whole(exponent: Exponent) -> Exponent:
-    return int(exponent) if exponent == int(exponent) else exponent
+    return int(exponent) if exponent.denominator == 1 else exponent
 
 
 def power(base: Expr, exponent: Exponent) -> Polynomial:
@@ -159,7 +155,7 @@ def _conjugate_reciprocal(terms: Polynomial) -> Polynomial:
 
 def to_sympy_number(value: Any) -> Expr:
     """An ``fmpq`` as a SymPy Rational."""
-    return sympy.Rational(int(value.p), int(value.q))
+    return sympy.Rational.from_coprime_ints(int(value.p), int(value.q))
 
 
 @lru_cache(maxsize=1 << 14)

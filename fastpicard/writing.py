@@ -16,7 +16,16 @@ from sympy.core.basic import ordering_of_classes
 
 from fastpicard import modes as algebra
 from fastpicard.modes import NO_ANGLE, Angle, Linear, Modes
-from fastpicard.ring import ONE, Monomial, Polynomial, add_term, expression_of, monomial_expression, to_expression
+from fastpicard.ring import (
+    ONE,
+    Monomial,
+    Polynomial,
+    add_term,
+    expression_of,
+    monomial_expression,
+    to_expression,
+    to_sympy_number,
+)
 
 _RANK = {name: rank for rank, name in enumerate(ordering_of_classes)}
 _UNKNOWN = len(ordering_of_classes) + 1
@@ -70,12 +79,11 @@ class _Writer:
     def add(self, terms: list[tuple[Any, Expr]], kind: int, angle: Angle, monomial: Monomial, f: Any) -> None:
         """Append every term of one mode."""
         factors, plain = self.monomial(monomial)
-        numerators, denominator = f.numer().coeffs(), int(f.denom())
-        for r, c in enumerate(numerators):
+        for r, c in enumerate(f.coeffs()):
             if c:
                 sine, sign = algebra.function_of(kind, r)
                 own_sign, wave, regular = self.wave(sine, angle)
-                value = sympy.Rational(sign * own_sign * int(c), denominator * factorial(r))
+                value = to_sympy_number(c * (sign * own_sign) / factorial(r))
                 product = sorted((*factors, *self.power(r), *wave), key=_first)
                 terms.append(_term(value, product) if plain and regular else
                              (None, Mul(value, *(e for _, e in product))))
