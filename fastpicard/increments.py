@@ -47,8 +47,9 @@ class Level:
 def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ...]:
     """``I_0 .. I_n``, going on from those already known."""
     result = list(known[:n + 1]) or [first_level(p)]
+    divisors = _Divisors(p)
     while len(result) <= n:
-        result.append(next_level(p, result[-1]))
+        result.append(next_level(p, result[-1], divisors))
     return tuple(result)
 
 
@@ -64,9 +65,8 @@ def _constants(terms: tuple[Term, ...]) -> Entry:
     return entry
 
 
-def next_level(p: Problem, level: Level) -> Level:
+def next_level(p: Problem, level: Level, divisors: _Divisors) -> Level:
     """``I_{m+1}``, the integral of ``P I_m``."""
-    divisors = _Divisors(p)
     columns = tuple(tuple(_integrated_product(row, column, divisors) for row in p.rows) for column in level.columns)
     return Level(level.order + 1, columns)
 

@@ -325,13 +325,15 @@ def function_of(kind: int, r: int) -> tuple[bool, int]:
 def frozen(modes: Modes, powers: list[Polynomial]) -> Modes:
     """A series without frequencies at a fixed time ``T``, given ``T**r / r!``: only constants are left."""
     values: dict[Key, Any] = {}
+    functions = {kind: [function_of(kind, r) for r in range(len(powers))] for kind in (COS, SIN)}
+    terms = [list(power.items()) for power in powers]
     for (kind, angle, monomial), f in modes.items():
-        for r, c in enumerate(f.coeffs()):
-            sine, sign = function_of(kind, r)
+        for c, (sine, sign), power in zip(f.coeffs(), functions[kind], terms, strict=False):
             if not c or sine and angle == NO_ANGLE:
                 continue
-            for m, value in powers[r].items():
+            for m, value in power:
                 factor, product_monomial = multiply_monomials(monomial, m)
                 key = (SIN if sine else COS, angle, product_monomial)
-                values[key] = values.get(key, 0) + c * value * (sign * factor)
+                amount = c * value if sign > 0 else -c * value
+                values[key] = values.get(key, 0) + (amount if factor == 1 else amount * factor)
     return {key: fmpq_poly([value]) for key, value in values.items() if value}

@@ -39,6 +39,7 @@ from fastpicard.series import PoissonSeries
 # Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
 SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)
 
+
 def check_order(n: Any) -> int:
     """The order of an iterate, an integer from 0 up."""
     if isinstance(n, bool) or not isinstance(n, numbers.Integral):
