@@ -22,41 +22,30 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import reduce
 from typing import Any
 
 from sympy import (
-    Add,
-    Derivative,
     Dummy,
     Expr,
     ImmutableDenseMatrix,
     Integer,
-    Mul,
-    Pow,
-    Rational,
-    Symbol,
     cos,
     expand,
     eye,
-    gcd,
     latex,
-    pi,
     sin,
-    sqrt,
     zeros,
 )
 from sympy.core.function import AppliedUndef
 
+from .drive import frequency, fresh_symbol, in_scales, matrix_modes, natural_scales, period_of
 from .energy import Scene
 from .equations import EquationsOfMotion, thrust
 from .errors import (
     InhomogeneousError,
-    NameClashError,
     NotAnEquilibriumError,
     NotAQuantityError,
     NotASceneError,
-    NotPeriodicError,
     QuantityError,
     SceneError,
 )
@@ -209,7 +198,7 @@ class LinearEquations:
         block = sum((c * cos(q * tau) + s * sin(q * tau) for q, (c, s) in modes.items()), zeros(len(self.scene)))
         drag = accelerations(lin.damping, 1)
         P = ImmutableDenseMatrix(_blocks(block, drag))
-        return FirstOrderSystem(P, tau, _period(modes), tuple((scale.symbol, scale.meaning) for scale in scales))
+        return FirstOrderSystem(P, tau, period_of(modes), tuple((scale.symbol, scale.meaning) for scale in scales))
 
     def __repr__(self) -> str:
         n, rest = len(self.scene), "" if not any(self.about) else f", about {self.about}"
@@ -316,14 +305,6 @@ def _divisor(by: Any, t: Any) -> Any:
     return factor
 
 
-def frequency(omega0: Any, t: Any) -> Any:
-    """``omega0`` as a nonzero constant; raises as :func:`quantity`, and QuantityError."""
-    omega0 = quantity(omega0, "omega0")
-    if omega0.is_zero or t in omega0.free_symbols or omega0.atoms(AppliedUndef):
-        raise QuantityError(f"omega0 is a nonzero constant angular frequency, and this one is {omega0}.")
-    return omega0
-
-
 def _short(matrix: Any) -> str:
     text = str(list(matrix))
     return text if len(text) < 120 else text[:117] + "..."
@@ -349,135 +330,3 @@ def _times(left: Any, right: Any) -> Any:
 def _blocks(stiffness: Any, damping: Any) -> Any:
     n = stiffness.rows
     return zeros(n).row_join(eye(n)).col_join(stiffness.row_join(damping))
-
-
-# --- trigonometric polynomials in tau: {q: (coefficient of cos q tau, coefficient of sin q tau)}, q >= 0 ------
-
-
-def modes_of(expression: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
-    """``expression(t)`` at ``t = tau/omega0`` as modes ``{q: (c, s)}``, the sum of ``c cos q tau + s sin q tau``.
-
-    Raises NotPeriodicError unless it is a finite sum with rational ``q``.
-    """
-    if t not in expression.free_symbols:
-        return {Integer(0): (expression, Integer(0))}
-    if isinstance(expression, Add):
-        return _sum(modes_of(term, t, omega0) for term in expression.args)
-    if isinstance(expression, Mul):
-        return reduce(_product, (modes_of(factor, t, omega0) for factor in expression.args))
-    if isinstance(expression, Pow) and expression.base != t and expression.exp.is_Integer and expression.exp > 0:
-        return reduce(_product, [modes_of(expression.base, t, omega0)] * int(expression.exp))
-    if isinstance(expression, (cos, sin)):
-        return _single(expression, t, omega0)
-    remedy = (f"replace {expression} by the motion meant, such as epsilon*cos(omega0*{t})"
-              if expression.atoms(AppliedUndef, Derivative) else "write the drive as a sum of cosines and sines")
-    raise NotPeriodicError(f"{expression} is not a trigonometric polynomial in tau = {omega0}*{t}: {remedy}.")
-
-
-def _single(wave: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
-    """``cos`` or ``sin`` of ``q omega0 t + phase``."""
-    angle = expand(wave.args[0])
-    rate = angle.coeff(t, 1)
-    q, phase = expand(rate / omega0), expand(angle - rate * t)
-    if not isinstance(q, Rational) or t in phase.free_symbols:
-        raise NotPeriodicError(
-            f"{wave} turns {rate if t not in phase.free_symbols else angle} in time {t}, not a rational multiple of "
-            f"omega0 = {omega0}: give as omega0 a frequency that divides every one of the drive."
-        )
-    side = 1 if q > 0 else -1
-    if isinstance(wave, cos):
-        return {abs(q): (cos(phase), -side * sin(phase))}
-    return {abs(q): (sin(phase), side * cos(phase))}
-
-
-def _sum(parts: Iterable[dict[Any, tuple[Any, Any]]]) -> dict[Any, tuple[Any, Any]]:
-    total: dict[Any, tuple[Any, Any]] = {}
-    for part in parts:
-        for q, (c, s) in part.items():
-            c0, s0 = total.get(q, (Integer(0), Integer(0)))
-            total[q] = (c0 + c, s0 + s)
-    return total
-
-
-def _product(left: dict[Any, tuple[Any, Any]], right: dict[Any, tuple[Any, Any]]) -> dict[Any, tuple[Any, Any]]:
-    """``2 (c cos p + s sin p)(C cos q + S sin q) = (cC - sS) cos(p+q) + (sC + cS) sin(p+q) + ...(p-q)``."""
-    def beats() -> Iterator[dict[Any, tuple[Any, Any]]]:
-        for p, (c, s) in left.items():
-            for q, (C, S) in right.items():
-                yield {p + q: ((c * C - s * S) / 2, (s * C + c * S) / 2)}
-                side = 1 if p >= q else -1
-                yield {abs(p - q): ((c * C + s * S) / 2, side * (s * C - c * S) / 2)}
-    return _sum(beats())
-
-
-def matrix_modes(matrix: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
-    """The modes of a matrix: two matrices a frequency; zero frequencies and zero modes are left out of sines."""
-    shape = matrix.shape
-    entries = [modes_of(entry, t, omega0) for entry in matrix]
-    none = (Integer(0), Integer(0))
-    found = sorted({q for modes in entries for q in modes})
-    return {q: tuple(ImmutableDenseMatrix(*shape, [expand(modes.get(q, none)[k]) if q or k == 0 else Integer(0)
-                                                   for modes in entries]) for k in (0, 1)) for q in found}
-
-
-def _period(modes: Mapping[Any, list[Any]]) -> Any:
-    present = [q for q, parts in modes.items() if q != 0 and any(any(part) for part in parts)]
-    return 2 * pi / reduce(gcd, present) if present else 2 * pi
-
-
-# --- h and v --------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Scale:
-    """``symbol`` stands for ``meaning``; ``old`` is replaced by ``new`` to bring it in."""
-
-    symbol: Any
-    meaning: Any
-    old: Any
-    new: Any
-
-
-def natural_scales(scene: Scene, omega0: Any) -> tuple[Scale, ...]:
-    """``h = epsilon/l`` and ``v = omega0 sqrt(l/g)`` ([Neves] (16), (17)), as far as equal rods have them."""
-    rod, g = scene.equal_rod, scene.gravity
-    if rod is None:
-        return ()
-    scales: list[Scale] = []
-    amplitude = _amplitude(scene, omega0)
-    if amplitude is not None:
-        h = fresh_symbol("h", scene, omega0, {amplitude: amplitude / rod.length})
-        scales.append(Scale(h, amplitude / rod.length, amplitude, h * rod.length))
-    if isinstance(omega0, Symbol) and not g.is_zero and not g.is_negative:
-        speed = omega0 * sqrt(rod.length / g)
-        v = fresh_symbol("v", scene, omega0, {omega0: speed})
-        scales.append(Scale(v, speed, omega0, v * sqrt(g / rod.length)))
-    return tuple(scales)
-
-
-def _amplitude(scene: Scene, omega0: Any) -> Any:
-    """The Symbol epsilon of a vertical drive ``epsilon cos q tau`` or ``epsilon sin q tau``, if it is one."""
-    rise = modes_of(scene.support_acceleration[1], scene.t, omega0)
-    waves = [expand(-x / (q * omega0) ** 2) for q, pair in rise.items() if q != 0 for x in pair if x != 0]
-    elsewhere = {x for _, value in scene.constants for x in value.free_symbols} | omega0.free_symbols
-    single = len(waves) == 1 and isinstance(waves[0], Symbol) and waves[0] not in elsewhere
-    return waves[0] if single else None
-
-
-def fresh_symbol(name: str, scene: Scene, omega0: Any, replaced: Mapping[Any, Any] | None = None) -> Any:
-    """A Symbol called ``name``; raises NameClashError if one of that name stays in the result.
-
-    ``replaced`` maps a Symbol that gives way to the new one to what the new one means.
-    """
-    gone = {old for old, meaning in (replaced or {}).items() if old == meaning} | {scene.t}
-    if any(x.name == name for x in (scene.free_symbols | omega0.free_symbols) - gone):
-        raise NameClashError(
-            f"the result needs a Symbol called {name}, and the scene has one of its own: rename the scene's {name}, "
-            f"or pass dimensionless=False, which needs no h and v."
-        )
-    return Symbol(name)
-
-
-def in_scales(coefficient: Any, scales: tuple[Scale, ...]) -> Any:
-    """``coefficient`` with h and v put in, expanded."""
-    return expand(expand(coefficient).xreplace({scale.old: scale.new for scale in scales}))

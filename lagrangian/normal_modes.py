@@ -38,9 +38,10 @@ from sympy import (
     sqrt,
 )
 
+from .drive import frequency, in_scales, modes_of, natural_scales
 from .energy import Scene
 from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError
-from .linearize import LinearEquations, frequency, in_scales, modes_of, natural_scales
+from .linearize import LinearEquations
 from .scene import refuse_text
 
 __all__ = ["NormalModes", "normal_modes"]

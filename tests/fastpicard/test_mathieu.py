@@ -427,7 +427,8 @@ def test_order_zero_has_no_odd_solution():
 
 
 @pytest.mark.parametrize("q", [
-    "1", "__import__('os')", 1j, mpmath.mpc(1), acb(1), sympy.Symbol("q"), sympy.I, None, True, [1], np.array([1.0]), mpmath.pi,
+    "1", "__import__('os')", 1j, mpmath.mpc(1), acb(1), sympy.Symbol("q"), sympy.I, None, True, [1], np.array([1.0]),
+    mpmath.pi,
 ], ids=repr)
 def test_q_that_is_no_real_number_is_refused_by_kind(q):
     """Text, complex and symbolic values and containers are not numbers q."""
