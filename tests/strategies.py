@@ -1,4 +1,4 @@
-"""What the laws are tried on: Poisson series with every kind of frequency, phase and constant, and matrices without symmetry."""
+"""What the laws are tried on: series with every kind of frequency, phase and constant; matrices without symmetry."""
 
 from fractions import Fraction
 
@@ -94,7 +94,10 @@ def plain_matrices(size, **options):
     return st.lists(row, min_size=size, max_size=size)
 
 
-def matrices(size=2, rates=plain_frequencies, angles=st.just(S.Zero), most=1):
+no_phase = st.just(S.Zero)
+
+
+def matrices(size=2, rates=plain_frequencies, angles=no_phase, most=1):
     """Matrices of trigonometric polynomials without symmetry, sines as well as cosines."""
     wave = st.builds(lambda f, q, p: f(q * t + p), functions, rates, angles)
     factors = st.one_of(wave, wave, st.just(S.One))

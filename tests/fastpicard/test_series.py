@@ -331,6 +331,6 @@ def test_constants_come_back_as_what_they_were(constant):
 
 
 def test_a_cosine_free_of_t_is_a_constant_and_also_a_phase():
-    """It comes back as it was beside powers of t; beside a wave the two turn into a sum, so that phases compare equal."""
+    """It comes back as it was beside powers of t; beside a wave the two form a sum, so that phases compare equal."""
     assert of(cos(phi) * t**2).integrate().as_expr() == cos(phi) * t**3 / 3
     assert of(cos(phi) * cos(t) - sin(phi) * sin(t)) == of(cos(t + phi))
