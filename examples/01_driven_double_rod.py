@@ -13,7 +13,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from sympy import Matrix, Rational, cos, latex, symbols
+from sympy import Matrix, Rational, cos, pretty, symbols
 
 from fastpicard import FloquetMatrix, mathieu_a
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize, normal_modes
@@ -30,7 +30,7 @@ def main() -> None:
     print(f"\nFloquet matrix: {F}, trace with {len(F.trace().args)} terms in h, v and pi")
     modes = normal_modes(linear)
     points = boundary_points(F)
-    report(points, modes)
+    report(F, points, modes)
     draw(points, modes)
 
 
@@ -40,7 +40,7 @@ def derive() -> object:
     equations = euler_lagrange(scene)
     linear = linearize(equations).divided()
     print("equations of motion, M(theta) theta'' = f(theta, theta', t), with M =")
-    print(latex(equations.mass_matrix))
+    print(pretty(equations.mass_matrix, use_unicode=False))
     modes = normal_modes(linear)
     print(f"{'':12}{'here':44}article")
     print(f"{'A':12}{modes.A.tolist()!s:44}Out[38]: [[4/3, 1/2], [1/2, 1/3]]")
@@ -82,7 +82,9 @@ def bisect(grows: object, low: float, high: float, tolerance: float) -> float:
 # -- what came out -------------------------------------------------------------
 
 
-def report(points: list[tuple[float, float]], modes: object) -> None:
+def report(F: FloquetMatrix, points: list[tuple[float, float]], modes: object) -> None:
+    moduli = [abs(F.multipliers({h: Rational(2, 100), v: Rational(y, 10)})[0]) for y in (801, 901)]
+    print(f"{'largest':12}{'(0.02, 80.1): {:.6g}, (0.02, 90.1): {:.6g}'.format(*moduli):44}Out[48]: 1.01665, 1.")
     slow = min(modes.mu, key=lambda mu: mu.evalf())
     found = next(y for x, y in points if x == 0.06 and y < 40)
     exact = (-slow / (mathieu_a(0, -2 * slow * Rational(6, 100), 20) / 4)) ** Rational(1, 2)
@@ -113,7 +115,7 @@ def draw(points: list[tuple[float, float]], modes: object) -> None:
     axes.set(xlabel=r"$h = \epsilon/l$ (amplitude over length)",
              ylabel=r"$v = \omega_0\sqrt{l/g}$ (dimensionless frequency)",
              title="Linear stability of the driven double rod, upside down", xlim=(0, 0.1), ylim=(0, 100))
-    axes.legend(loc="upper right", fontsize=9)
+    axes.legend(loc="upper center", fontsize=9)
     PICTURE.parent.mkdir(exist_ok=True)
     figure.savefig(PICTURE, dpi=130)
     print(f"picture: {PICTURE.relative_to(PICTURE.parent.parent.parent)}")

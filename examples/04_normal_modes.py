@@ -2,7 +2,9 @@
 
 Vertically driven chains of equal rods decouple into ``psi'' + mu_i (-1/v**2 + h cos tau) psi = 0``
 (the article's equation (21), any number of rods); the upright chain is stable
-where all of them are.  Writes ``docs/images/normal_modes.png``.
+where all of them are.  The largest ``|a| + |b|`` of the chart is 19.2, for which
+the remainder of the trace after 80 iterates is below 1e-4.  Writes
+``docs/images/normal_modes.png``.
 """
 
 from pathlib import Path
@@ -19,7 +21,7 @@ a, b, t, m, l, epsilon, omega0 = symbols("a b t m l epsilon omega0")
 
 
 def main() -> None:
-    mathieu = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 30)
+    mathieu = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 80)
     trace = mathieu.lambdify_trace([a, b])
     figure, axes = plt.subplots(figsize=(8, 5.5), constrained_layout=True)
     for rods, colour in zip(range(1, 6), plt.cm.viridis(np.linspace(0, 0.9, 5)), strict=True):
