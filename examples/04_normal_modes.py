@@ -27,7 +27,7 @@ def main() -> None:
     for rods, colour in zip(range(1, 6), plt.cm.viridis(np.linspace(0, 0.9, 5)), strict=True):
         mus = [float(mu) for mu in modes(rods)]
         print(f"N = {rods}: mu = {', '.join(f'{mu:.6f}' for mu in mus)}")
-        h, v = np.meshgrid(np.geomspace(0.003, 0.5, 800), np.geomspace(2, 1000, 800))
+        h, v = np.meshgrid(np.geomspace(0.003, 0.5, 1000), np.geomspace(2, 1000, 400))
         margin = np.min([2 - np.abs(trace(-mu / v**2, mu * h)) for mu in mus], axis=0)
         axes.contourf(h, v, margin, levels=[0, 4], colors=[colour], alpha=0.15)
         axes.contour(h, v, margin, levels=[0], colors=[colour])
