@@ -269,7 +269,7 @@ def to_number(x: Any, digits: int | None) -> Any:
     """The midpoint of a ball as float, or as mpf with the digits asked for."""
     mantissa, exponent = x.mid().man_exp()
     if digits is None:
-        return float(mpmath.ldexp(mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), 60, "n")), 0))
+        return libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "n"))
     return mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), libmp.dps_to_prec(digits), "n"))
 
 

@@ -302,10 +302,10 @@ def test_the_plain_definition_takes_any_right_hand_side():
 
 @given(matrices(2), plain_times)
 def test_numbers_are_those_of_the_exact_matrix(P, time):
-    """Fifteen digits against evalf of the exact value, and floats are the rounded digits."""
+    """Digits against evalf of the exact value, and floats are the digits rounded."""
     Phi = FundamentalMatrix(P, t, 2)
     exact = Phi(time).subs(VALUES)
-    found = Phi.evaluate(time, VALUES, 20)
+    found = Phi.evaluate(time, VALUES, 30)
 
     assert all(
         abs(found[i, j] - mpmath.mpf(str(sympy.N(exact[i, j], 25)))) < 1e-14 * (1 + abs(found[i, j]))
