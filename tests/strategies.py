@@ -28,7 +28,7 @@ frequencies = st.one_of(plain_frequencies, plain_frequencies, other_frequencies)
 phases = st.one_of(
     st.just(S.Zero),
     st.sampled_from(
-        [S.Zero, phi, -phi, phi / 2, S.One, Rational(-1, 3), pi / 2, -pi, pi / 3, phi - pi / 4, -2 * t0, pi / 5]
+        [S.Zero, phi, -phi, phi / 2, S.One, Rational(-1, 3), pi / 2, -pi, pi / 3, phi - pi / 4, -2 * t0]
     ),
 )
 plain_constants = st.sampled_from([S.One, S.One, a, b, a * b, a**2, 1 / a, b / a**3])
