@@ -72,6 +72,7 @@ def sums(terms, most=3):
 expressions = sums(modes())
 plain_expressions = sums(modes(plain_constants, plain_frequencies, st.just(S.Zero)))
 short_expressions = sums(modes(), most=2)
+single_modes = sums(modes(), most=1)
 plain_times = st.sampled_from([Rational(1), Rational(-2, 3), Rational(7, 4), Rational(5)])
 
 
