@@ -7,7 +7,7 @@ Ordinary Differential Equations with Periodic Coefficients by Exact Picard
 Iterates", The Mathematica Journal 10(1), 2006).
 
 The files are read, and import one another, in this order: errors, ring, modes,
-expressions, evaluate, vectorise, series, integrate, matrix, increments, picard,
+expressions, evaluate, horner, doubledouble, vectorise, series, integrate, matrix, increments, picard,
 floquet, mathieu.
 """
 

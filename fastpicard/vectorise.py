@@ -1,54 +1,377 @@
-r"""Exact constants as NumPy functions of their parameters.
+r"""Exact constants as numbers, for one point or a million, no digit of which misleads.
 
-All that does not depend on the parameters is collapsed into one coefficient for
-each monomial, in balls, before anything is rounded; the coefficients are then
-correctly rounded float64 and the polynomial is evaluated by Horner's rule, one
-parameter after another, on arrays that broadcast.  For Mathieu's equation over
-one period the loss is at most about ``2.7 sqrt(|a| + |b|)`` digits.
+All that does not depend on the parameters is collapsed, in balls, into one
+coefficient for each monomial *before* anything is rounded.  What is left is a
+polynomial in few variables: the parameters, their reciprocals, roots and
+functions, sines and cosines of symbolic phases.
+
+**Which arithmetic.**  Let v be the exact entries at a point (one, for a trace), and
+``u = 2**-53``; every output shall be right to ``10 u max |v|``, which is at most 10 ulp of
+the largest entry.  For each point the cheapest way that is *proved* to do it is
+taken, by the bounds of :mod:`fastpicard.doubledouble`:
+
+1. float64, if ``u W <= 9 u f`` for all entries,
+2. pairs of float64, if ``u |r + e| + u*u K W <= 9 u f``,
+3. balls, whose precision is raised until it does.
+
+Here ``f = max (|value| - bound) <= max |v|``.  Neither bound knows the result beforehand,
+both hold for every input, and the better one costs time only where it is needed.
 """
 
 from __future__ import annotations
 
+import math
 import numbers
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import sympy
-from flint import arb
+from flint import arb, ctx, fmpq
 from sympy import Symbol
 
+from fastpicard import doubledouble
+from fastpicard.doubledouble import SLACK, UNIT, Polynomial
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
-from fastpicard.evaluate import Point, free_symbols, numpy, refine, to_number
-from fastpicard.modes import COS, NO_ANGLE, Angle, Linear, Modes
-from fastpicard.ring import expression_of, monomial_expression, symbols_of
+from fastpicard.evaluate import (
+    EXTRA_BITS,
+    Point,
+    Values,
+    check_digits,
+    exact_values,
+    free_symbols,
+    numpy,
+    refine,
+    to_number,
+)
+from fastpicard.horner import Exponents, program, run
+from fastpicard.modes import COS, NO_ANGLE, Angle, Modes
+from fastpicard.ring import Monomial, expression_of, symbols_of
 
 Array = Any
-Exponents = tuple[Any, ...]
+BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
+ALLOWED = 9 * UNIT  # of the largest entry; what is missing to 10 is left to the roundings of the bounds
+FLOAT, PAIR, BALL = 0, 1, 2
 
 
-def vectorise(constants: list[Modes], params: Sequence[Symbol], t: Symbol) -> Callable[..., list[Array]]:
-    """A function of arrays, one for each parameter, that returns one float64 array for each constant.
+# -- collapsed -----------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Variable:
+    """What a collapsed polynomial is a polynomial in: a power of a generator, or a wave of a phase."""
+
+    power: Monomial = ()
+    wave: tuple[int, Angle] = (COS, NO_ANGLE)
+
+    @property
+    def symbols(self) -> set[Symbol]:
+        """The parameters it depends on."""
+        return symbols_of([self.power, *(m for m, _ in self.wave[1][1])])
+
+    def ball(self, point: Point) -> Any:
+        """Its value in balls."""
+        if self.power:
+            return point.monomial(self.power)
+        kind, angle = self.wave
+        wave = point.wave(angle)
+        return wave.real if kind == COS else wave.imag
+
+    @property
+    def parameter(self) -> tuple[Any, int]:
+        """The parameter, and which of its powers 1, 2 and -1; (None, 0) where it is none of these."""
+        if len(self.power) == 1 and self.power[0][1] in (1, 2, -1) and expression_of(self.power[0][0]).is_Symbol:
+            return expression_of(self.power[0][0]), int(self.power[0][1])
+        return None, 0
+
+    def values(self, columns: dict[Symbol, Array]) -> doubledouble.Variable:
+        """Its values for columns of parameters."""
+        symbol, unit = self.parameter
+        if symbol is None:
+            return _by_balls(self, columns)
+        x = columns[symbol]
+        if unit == 1:
+            return doubledouble.Variable(x, None)
+        return doubledouble.Variable(*(doubledouble.square(x) if unit == 2 else doubledouble.reciprocal(x)))
+
+
+class Collapsed:
+    """Several constants of one family as polynomials in few variables, with coefficients to any precision.
+
+    Immutable to its users; remembers the coefficients of the precisions last used.
+
+    Parameters
+    ----------
+    constants : series free of the time
+    t : Symbol
+    """
+
+    def __init__(self, constants: list[Modes], t: Symbol) -> None:
+        self.t = t
+        self.symbols = set().union(*map(free_symbols, constants)) if constants else set()
+        names = _variables(constants)
+        parts = [_parts(modes, names) for modes in constants]
+        self.variables = list(names)
+        kept = [j for j in range(len(self.variables)) if any(m[j] for part in parts for m in part)]
+        kept.sort(key=lambda j: len({m[j] for part in parts for m in part}))  # the fewest powers outermost
+        self.variables = [self.variables[j] for j in kept]
+        self.exponents = [[tuple(m[j] for j in kept) for m in part] for part in parts]
+        self.programs = [program(list(exponents)) for exponents in self.exponents]
+        self._inner = [list(part.values()) for part in parts]
+        self._balls: dict[int, list[list[Any]]] = {}
+
+    def coefficients(self) -> list[list[Any]]:
+        """The coefficients of every constant, balls at the working precision."""
+        if ctx.prec not in self._balls:
+            if len(self._balls) > 3:
+                del self._balls[min(self._balls)]
+            constant = Point(arb(0), {})
+            self._balls[ctx.prec] = [[constant(modes) for modes in part] for part in self._inner]
+        return self._balls[ctx.prec]
+
+    def balls(self, values: dict[Symbol, Any]) -> list[Any]:
+        """The constants at a point, at the working precision."""
+        point = Point(arb(0), values)
+        variables = [v.ball(point) for v in self.variables]
+        return [arb(run(steps, row, variables)) for steps, row in zip(self.programs, self.coefficients(), strict=True)]
+
+    def at(self, values: Values | None, digits: int | None) -> list[Any]:
+        """The constants at one point, every digit right: see :func:`fastpicard.evaluate.evaluate`."""
+        exact = exact_values(values, self.symbols, self.t)
+        digits = check_digits(digits)
+        return [to_number(x, digits) for x in refine(lambda: self.balls(exact), digits)]
+
+    @cached_property
+    def rounded(self) -> tuple[list[int], list[list[tuple[float, float]]]]:
+        """Exponents of two that scale the variables, and the scaled coefficients as pairs of floats."""
+        flat = iter(refine(lambda: [c for row in self.coefficients() for c in row], 40))
+        rows = [[next(flat) for _ in row] for row in self._inner]
+        scales = _scales([(m, c) for ms, row in zip(self.exponents, rows, strict=True)
+                          for m, c in zip(ms, row, strict=True) if c != 0], len(self.variables))
+        return scales, [[_rounded(c, -sum(map(int.__mul__, scales, m))) for m, c in zip(ms, row, strict=True)]
+                        for ms, row in zip(self.exponents, rows, strict=True)]
+
+
+def _variables(constants: list[Modes]) -> dict[Variable, int]:
+    """The variables that occur, each with its place."""
+    powers: dict[tuple[int, bool], set[Any]] = {}
+    waves: dict[Variable, int] = {}
+    for modes in constants:
+        for kind, angle, monomial in modes:
+            if _is_symbolic(angle):
+                waves.setdefault(Variable(wave=(kind, angle)), 0)
+            for g, e in monomial:
+                if expression_of(g).free_symbols:
+                    powers.setdefault((g, e > 0), set()).add(e)
+    found = [*waves, *(Variable(((g, _unit(g, exponents)),)) for (g, _), exponents in sorted(powers.items()))]
+    return {variable: j for j, variable in enumerate(found)}
+
+
+def _is_symbolic(angle: Angle) -> bool:
+    return bool(symbols_of(m for m, _ in angle[1]))
+
+
+def _unit(g: int, exponents: set[Any]) -> Any:
+    """The power of a generator that the others are powers of; a square at most where it is a parameter."""
+    sign = 1 if min(exponents) > 0 else -1
+    unit = sign * Fraction(math.gcd(*(Fraction(e).numerator for e in exponents)),
+                           math.lcm(*(Fraction(e).denominator for e in exponents)))
+    if unit.denominator > 1:
+        return unit
+    if expression_of(g).is_Symbol and unit != 2:
+        return sign * (2 if sign > 0 and unit % 2 == 0 else 1)
+    return int(unit)
+
+
+def _parts(modes: Modes, names: dict[Variable, int]) -> dict[Exponents, Modes]:
+    """A constant by monomials: exponents of the variables, and the rest, which is free of parameters."""
+    places = {(v.power[0][0], v.power[0][1] > 0): (j, v.power[0][1]) for v, j in names.items() if v.power}
+    parts: dict[Exponents, Modes] = {}
+    for (kind, angle, monomial), f in modes.items():
+        exponents, rest = [0] * len(names), []
+        for g, e in monomial:
+            if (g, e > 0) in places and expression_of(g).free_symbols:
+                j, unit = places[g, e > 0]
+                exponents[j] = int(Fraction(e) / unit)
+            else:
+                rest.append((g, e))
+        if _is_symbolic(angle):
+            exponents[names[Variable(wave=(kind, angle))]] = 1
+            kind, angle = COS, NO_ANGLE
+        parts.setdefault(tuple(exponents), {})[kind, angle, tuple(rest)] = f
+    return parts
+
+
+def _scales(terms: list[tuple[Exponents, Any]], count: int) -> list[int]:
+    """Powers of two for the variables that make the coefficients as equal as may be, by least squares."""
+    if not terms or not count:
+        return [0] * count
+    np = numpy()
+    rows = np.array([[1, *m] for m, _ in terms], dtype=float)
+    sizes = np.array([_magnitude(c) for _, c in terms], dtype=float)
+    return [round(float(slope)) for slope in np.linalg.lstsq(rows, sizes, rcond=None)[0][1:]]
+
+
+def _magnitude(c: Any) -> int:
+    mantissa, exponent = c.mid().man_exp()
+    return int(abs(mantissa)).bit_length() + int(exponent)
+
+
+def _rounded(c: Any, exponent: int) -> tuple[float, float]:
+    """``c * 2**exponent`` as a pair of floats."""
+    with ctx.workprec(256):
+        c = c * arb(2) ** exponent
+        high = to_number(c, None)
+        return high, to_number(c - arb(high), None) if math.isfinite(high) else 0.0
+
+
+# -- many points ---------------------------------------------------------------
+
+
+class Evaluator:
+    """The constants as functions of arrays, each output with its bound.
+
+    Parameters
+    ----------
+    collapsed : the constants
+    names : the parameters in the order of the arrays
+    """
+
+    def __init__(self, collapsed: Collapsed, names: tuple[Symbol, ...]) -> None:
+        self.collapsed, self.names = collapsed, names
+        self.scales, rows = collapsed.rounded
+        pairs = [v.parameter[1] != 1 for v in collapsed.variables]
+        self.polynomials = [Polynomial(steps, row, [sum(m) for m in ms], pairs) for steps, row, ms in
+                            zip(collapsed.programs, rows, collapsed.exponents, strict=True)]
+        self.limit = min((p.limit() for p in self.polynomials), default=doubledouble.LARGEST)
+
+    def __call__(self, columns: list[Array]) -> tuple[Array, Array, Array]:
+        """Values and bounds, shape (constants, points), and the arithmetic of every point, shape (points,)."""
+        np, size = numpy(), len(columns[0]) if columns else 1
+        values, bounds = np.full((len(self.polynomials), size), np.nan), np.full((len(self.polynomials), size), np.inf)
+        route = np.full(size, BALL, dtype=np.int8)
+        finite = np.logical_and.reduce([np.isfinite(x) for x in columns]) if columns else np.ones(1, dtype=bool)
+        if self.limit >= 0:
+            with np.errstate(all="ignore"):
+                for start in range(0, size, BLOCK):
+                    block = slice(start, start + BLOCK)
+                    self._block([x[block] for x in columns], values[:, block], bounds[:, block], route[block])
+        for i in np.flatnonzero((route == BALL) & finite):
+            values[:, i], bounds[:, i] = self._ball([x[i] for x in columns])
+        return values, bounds, route
+
+    def _block(self, columns: list[Array], values: Array, bounds: Array, route: Array) -> None:
+        """Fill in what float64 and pairs can do for one block."""
+        np, given = numpy(), dict(zip(self.names, columns, strict=True))
+        variables = [v.values(given).scaled(s) for v, s in zip(self.collapsed.variables, self.scales, strict=True)]
+        inside = np.ones(len(route), dtype=bool)
+        for variable in variables:
+            inside &= variable.inside(self.limit)
+        places = np.flatnonzero(inside)
+        here = variables if len(places) == len(inside) else [v.at(places) for v in variables]
+        largest = max((float(abs(v.x).max(initial=1)) for v in here), default=1.0)
+        sizes = [p.sizes(here, len(places)) for p in self.polynomials]
+        lost = [p.underflow(largest) for p in self.polynomials]
+        for way, compute in ((FLOAT, _floats), (PAIR, _pairs)):
+            if not len(places):
+                return
+            found = [compute(p, here, w) for p, w in zip(self.polynomials, sizes, strict=True)]
+            results = np.array([x for x, _ in found])
+            errors = np.array([x * SLACK + underflow for (_, x), underflow in zip(found, lost, strict=True)])
+            good = errors.max(axis=0) <= ALLOWED * (abs(results) - errors).max(axis=0)
+            values[:, places[good]], bounds[:, places[good]] = results[:, good], errors[:, good]
+            route[places[good]] = way
+            if good.any():
+                rest = np.flatnonzero(~good)
+                places, sizes, here = places[rest], [w[rest] for w in sizes], [v.at(rest) for v in here]
+
+    def _ball(self, at: list[float]) -> tuple[list[float], list[float]]:
+        """One point in balls: the largest entry decides when the precision is enough."""
+        exact = {name: fmpq(*map(int, float(x).as_integer_ratio())) for name, x in zip(self.names, at, strict=True)}
+        precision = 128
+        while True:
+            with ctx.workprec(precision):
+                found = self.collapsed.balls(exact)
+                if not all(x.is_finite() for x in found) or precision > EXTRA_BITS:
+                    break
+                if max(x.rad() for x in found) <= max(x.abs_lower() for x in found) * arb(2) ** -60:
+                    break
+            precision *= 2
+        with ctx.workprec(precision):
+            pairs = list(map(_with_bound, found))
+        return [value for value, _ in pairs], [bound for _, bound in pairs]
+
+
+def _floats(p: Polynomial, variables: list[doubledouble.Variable], weighted: Array) -> tuple[Array, Array]:
+    return p.floats(variables, len(weighted)), UNIT * weighted
+
+
+def _pairs(p: Polynomial, variables: list[doubledouble.Variable], weighted: Array) -> tuple[Array, Array]:
+    r, e = p.pairs(variables, len(weighted))
+    value = r + e
+    return value, UNIT * abs(value) + UNIT * UNIT * p.most * weighted
+
+
+def _with_bound(x: Any) -> tuple[float, float]:
+    """The float nearest to a ball, and how far from it the ball reaches."""
+    if not x.is_finite():
+        return math.nan, math.inf
+    value = to_number(x, None)
+    if not math.isfinite(value):
+        return value, math.inf
+    return value, math.nextafter(to_number((x - arb(value)).abs_upper(), None), math.inf) if x != value else 0.0
+
+
+def _by_balls(variable: Variable, columns: dict[Symbol, Array]) -> doubledouble.Variable:
+    """The values of a function of parameters as pairs, through balls: once for every different point."""
+    np, names = numpy(), sorted(variable.symbols, key=str)
+    points, inverse = np.unique(np.stack([columns[s] for s in names]), axis=1, return_inverse=True)
+    pairs = np.array([_ball_pair(variable, dict(zip(names, point, strict=True))) for point in points.T]).reshape(-1, 2)
+    return doubledouble.Variable(*pairs[inverse.reshape(-1)].T)
+
+
+def _ball_pair(variable: Variable, at: dict[Symbol, float]) -> tuple[float, float]:
+    """One value as a pair of floats right to ``2**-106``, or nan where there is none: a pole, or no digits at all."""
+    if not all(map(math.isfinite, at.values())):
+        return math.nan, math.nan
+    exact = {s: fmpq(*map(int, float(x).as_integer_ratio())) for s, x in at.items()}
+    with ctx.workprec(192):
+        x = variable.ball(Point(arb(0), exact))
+    high, low = _rounded(x, 0) if x.is_finite() else (math.nan, math.nan)
+    return (high, low) if x == 0 or high and x.rel_accuracy_bits() >= 110 else (math.nan, math.nan)
+
+
+# -- functions -----------------------------------------------------------------
+
+
+def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, ...],
+              bound: bool = False) -> Callable[..., Any]:
+    """A function of arrays, one for each parameter, that broadcast to ``(..., *shape)``.
 
     Raises
     ------
     MissingParameterError
         if a parameter that occurs is not among ``params``.
     """
-    names = _checked(params, t)
-    missing = sorted(set().union(*map(free_symbols, constants)) - set(names), key=str)
+    names = _checked(params, collapsed.t)
+    missing = sorted(collapsed.symbols - set(names), key=str)
     if missing:
         absent = ", ".join(map(str, missing))
         raise MissingParameterError(f"every parameter must be an argument, but {absent} is missing among "
                                     f"{list(names)}.  Add it to the list.")
-    polynomials = [_Polynomial(modes, names) for modes in constants]
+    evaluator = Evaluator(collapsed, names)
 
-    def function(*values: Array) -> list[Array]:
+    def function(*values: Array) -> Any:
         if len(values) != len(names):
             raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were "
                                "given.  Give one number or array for each.")
-        arrays = list(numpy().broadcast_arrays(*(_array(value) for value in values)))
-        return [polynomial(arrays) for polynomial in polynomials]
+        arrays = numpy().broadcast_arrays(*(_array(value) for value in values))
+        outer = arrays[0].shape if arrays else ()
+        found, errors, _ = evaluator([array.reshape(-1) for array in arrays])
+        results = [x.T.reshape(outer + shape)[()] for x in ((found, errors) if bound else (found,))]
+        return tuple(results) if bound else results[0]
 
     return function
 
@@ -70,85 +393,3 @@ def _checked(params: Sequence[Symbol], t: Symbol) -> tuple[Symbol, ...]:
         raise BadInputError(f"params must be distinct and without the time {t}, but they are {names}.  "
                             "Name each parameter once.")
     return tuple(names)
-
-
-class _Polynomial:
-    """A constant of the family: Laurent polynomial times sines and cosines of phases."""
-
-    def __init__(self, modes: Modes, names: tuple[Symbol, ...]) -> None:
-        self.names = names
-        self.variables = sorted({g for _, _, m in modes for g, _ in m if expression_of(g).free_symbols})
-        groups: dict[tuple[int, Angle, Exponents], Modes] = {}
-        for (kind, angle, monomial), f in modes.items():
-            fixed = not symbols_of(m for m, _ in angle[1])
-            exponents = tuple(dict(monomial).get(g, 0) for g in self.variables)
-            rest = tuple((g, e) for g, e in monomial if g not in self.variables)
-            outer = (COS, NO_ANGLE) if fixed else (kind, angle)
-            inner = (kind, angle) if fixed else (COS, NO_ANGLE)
-            groups.setdefault((*outer, exponents), {})[(*inner, rest)] = f
-        values = _rounded(list(groups.values()))
-        self.waves: dict[tuple[int, Angle], dict[Exponents, float]] = {}
-        for (kind, angle, exponents), value in zip(groups, values, strict=True):
-            self.waves.setdefault((kind, angle), {})[exponents] = value
-        self.functions = {g: _generator_function(g, names) for g in self.variables}
-
-    def __call__(self, arrays: list[Array]) -> Array:
-        shape = arrays[0].shape if arrays else ()
-        variables = [self.functions[g](arrays) for g in self.variables]
-        total = numpy().zeros(shape)
-        for (kind, angle), terms in self.waves.items():
-            value = horner(terms, variables)
-            if angle != NO_ANGLE:
-                phase = _linear(angle[1], self.names)(arrays)
-                value = value * (numpy().cos(phase) if kind == COS else numpy().sin(phase))
-            total = total + value
-        return total
-
-
-def _rounded(constants: list[Modes]) -> list[float]:
-    """Constants without parameters as correctly rounded floats."""
-    balls = refine(lambda: [Point(arb(0), {})(modes) for modes in constants], None) if constants else []
-    return [to_number(x, None) for x in balls]
-
-
-def horner(terms: dict[Exponents, float], variables: list[Array]) -> Array:
-    """``sum c x**i y**j ...`` by Horner's rule in the first variable, recursively in the others."""
-    if not variables:
-        return terms[()]
-    first, *others = variables
-    rows: dict[Any, dict[Exponents, float]] = {}
-    for (e, *rest), value in terms.items():
-        rows.setdefault(e, {})[tuple(rest)] = value
-    exponents = sorted(rows, reverse=True)
-    total: Array = 0.0
-    for e, below in zip(exponents, [*exponents[1:], 0], strict=True):
-        total = (total + horner(rows[e], others)) * _power(first, e - below)
-    return total
-
-
-def _power(x: Array, e: Any) -> Array:
-    if e == 0:
-        return 1.0
-    if e == 1:
-        return x
-    return numpy().power(x, float(e)) if isinstance(e, Fraction) else x ** int(e)
-
-
-def _generator_function(number: int, names: tuple[Symbol, ...]) -> Callable[[list[Array]], Array]:
-    e = expression_of(number)
-    if e in names:
-        place = names.index(e)
-        return lambda arrays: arrays[place]
-    return _lambdified(e, names)
-
-
-def _lambdified(e: Any, names: tuple[Symbol, ...]) -> Callable[[list[Array]], Array]:
-    """SymPy's lambdify on renamed symbols, for a symbol's name is code to it."""
-    dummies = [sympy.Dummy() for _ in names]
-    function = sympy.lambdify(dummies, e.subs(dict(zip(names, dummies, strict=True))), "numpy")
-    return lambda arrays: function(*arrays)
-
-
-def _linear(form: Linear, names: tuple[Symbol, ...]) -> Callable[[list[Array]], Array]:
-    expression = sympy.Add(*(sympy.Rational(c) * monomial_expression(m) for m, c in form))
-    return _lambdified(expression, names)
