@@ -15,21 +15,24 @@ from __future__ import annotations
 
 import math
 import numbers
+import operator
 from collections.abc import Callable, Iterable, Mapping
+from functools import lru_cache
 from typing import Any
 
 import mpmath
 import sympy
-from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly, fmpz
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpz, fmpz_poly
 from mpmath import libmp
 from sympy import Expr, Symbol
 
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
-from fastpicard.modes import COS, Linear, Modes
+from fastpicard.modes import COS, Key, Linear, Modes
 from fastpicard.ring import Monomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
 Values = Mapping[Any, Any]
+Prepared = list[tuple[Key, Any, Any]]  # integer coefficients of powers, and their common rational factor
 
 
 def numpy() -> Any:
@@ -207,18 +210,36 @@ class Point:
 
     def __call__(self, modes: Modes) -> Any:
         """The value of a series."""
+        return self.total(prepared(modes))
+
+    def total(self, series: Prepared) -> Any:
+        """The value of a series that was prepared once for several precisions."""
         place = acb(0, -self.time)
         value = arb(0)
-        for (kind, angle, monomial), f in modes.items():
-            amplitude = acb_poly(divided(f))(place) if f.degree() > 0 else acb(arb(f[0]))
+        for (kind, angle, monomial), f, scale in series:
+            amplitude = acb_poly(f)(place) * scale if f.degree() > 0 else acb(arb(f[0] * scale))
             wave = self.wave(angle) * amplitude
             value += (wave.real if kind == COS else wave.imag) * self.monomial(monomial)
         return value
 
 
-def divided(f: Any) -> Any:
-    """The coefficients over ``r!``: from the basis ``t**r / r!`` to powers."""
-    return fmpq_poly([c / math.factorial(r) for r, c in enumerate(f.coeffs())])
+def prepared(modes: Modes) -> Prepared:
+    """From the basis ``t**r / r!`` to powers, ``f = sum (L!/r!) n_r x**r / (L! d)``: integers, no gcd for each."""
+    result = []
+    for key, f in modes.items():
+        row = _quotients(f.degree())
+        numerators = fmpz_poly(list(map(operator.mul, f.numer().coeffs(), row)))
+        result.append((key, numerators, fmpq(1, f.denom() * row[0])))
+    return result
+
+
+@lru_cache(maxsize=256)
+def _quotients(top: int) -> list[Any]:
+    """``L!/r!`` for r = 0 .. L."""
+    found = [fmpz(1)]
+    for r in range(top, 0, -1):
+        found.append(found[-1] * r)
+    return found[::-1]
 
 
 # -- as many digits as asked for ---------------------------------------------
@@ -285,9 +306,10 @@ def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, d
     exact = exact_values(values, needed, t)
     when = exact_number(time, "the time")
     digits = check_digits(digits)
+    ready = list(map(prepared, series))
 
     def compute() -> list[Any]:
         point = Point(when, exact)
-        return [point(modes) for modes in series]
+        return list(map(point.total, ready))
 
     return [to_number(x, digits) for x in refine(compute, digits)]
