@@ -306,11 +306,17 @@ def vanishes(modes: Modes) -> bool:
     """Whether a series is zero as a function of time and parameters."""
     if not modes or not has_relations(m for _, _, m in modes):
         return not modes
+    return not support(modes)
+
+
+def support(modes: Modes) -> frozenset[tuple[int, Angle, int]]:
+    """The ``(kind, angle, r)`` whose coefficient is not zero, relations between parameters included."""
     collected: dict[tuple[int, Angle, int], Polynomial] = {}
     for (kind, angle, monomial), f in modes.items():
         for r, c in enumerate(f.coeffs()):
-            add_term(collected.setdefault((kind, angle, r), {}), monomial, c)
-    return all(map(is_zero, collected.values()))
+            if c:
+                add_term(collected.setdefault((kind, angle, r), {}), monomial, c)
+    return frozenset(place for place, terms in collected.items() if not is_zero(terms))
 
 
 # -- values ------------------------------------------------------------------
@@ -322,10 +328,15 @@ def function_of(kind: int, r: int) -> tuple[bool, int]:
     return (r + kind) % 2 == 1, -1 if quarter_turns % 2 else 1
 
 
+@lru_cache(maxsize=64)
+def _functions_of(kind: int, count: int) -> list[tuple[bool, int]]:
+    return [function_of(kind, r) for r in range(count)]
+
+
 def frozen(modes: Modes, powers: list[Polynomial]) -> Modes:
     """A series without frequencies at a fixed time ``T``, given ``T**r / r!``: only constants are left."""
     values: dict[Key, Any] = {}
-    functions = {kind: [function_of(kind, r) for r in range(len(powers))] for kind in (COS, SIN)}
+    functions = [_functions_of(kind, len(powers)) for kind in (COS, SIN)]
     terms = [list(power.items()) for power in powers]
     for (kind, angle, monomial), f in modes.items():
         for c, (sine, sign), power in zip(f.coeffs(), functions[kind], terms, strict=False):

@@ -30,6 +30,7 @@ from fastpicard.ring import (
     monomial_expression,
     multiply,
     multiply_monomials,
+    normal,
     power,
     rational,
     reciprocal,
@@ -219,20 +220,28 @@ def _read_power(e: Expr, t: Symbol) -> Modes:
         return _negative_power(base, int(exponent), e, t)
     if exponent.is_Rational and base.is_Integer and base > 1:
         return algebra.constant(_root_of_integer(int(base), exponent))
+    if exponent.is_Rational and base.is_Integer:
+        turn = algebra.total(_fixed_value(cos(pi * exponent), t),
+                             algebra.scaled(_fixed_value(sin(pi * exponent), t), power(I, 1)))
+        return algebra.scaled(turn, _root_of_integer(-int(base), exponent))
     if exponent.is_Rational:
-        return algebra.constant(power(base, _exponent(exponent)))
+        return algebra.constant(power(base, fraction(exponent), _polynomial_or_none(base, t)))
     return _read_other(e, t)
-
-
-def _exponent(value: Any) -> Any:
-    return fraction(value)
 
 
 def _root_of_integer(base: int, exponent: Any) -> Polynomial:
     result: Polynomial = {ONE: fmpq(1)}
     for prime, multiplicity in sympy.factorint(base).items():
-        result = multiply(result, power(sympy.Integer(prime), _exponent(exponent * multiplicity)))
+        result = multiply(result, power(sympy.Integer(prime), fraction(exponent * multiplicity)))
     return result
+
+
+def _polynomial_or_none(base: Expr, t: Symbol) -> Polynomial | None:
+    """What a sum or product under a root is in other generators."""
+    if not (base.is_Add or base.is_Mul):
+        return None
+    modes = _read(base, t)
+    return None if any(angle != NO_ANGLE for _, angle, _ in modes) else {m: f[0] for (_, _, m), f in modes.items()}
 
 
 def _negative_power(base: Expr, exponent: int, e: Expr, t: Symbol) -> Modes:
@@ -276,7 +285,7 @@ def _linear_argument(argument: Expr, t: Symbol) -> tuple[Angle, Any] | None:
         if f[0]:
             phase[monomial] = f[0]
     half_turns = phase.pop(((generator(pi), 1),), fmpq(0))
-    return (algebra.linear(frequency), algebra.linear(phase)), half_turns
+    return (algebra.linear(normal(frequency)), algebra.linear(normal(phase))), half_turns
 
 
 def _trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes:
@@ -332,7 +341,7 @@ def shifted(modes: Modes, by: Polynomial, t: Symbol) -> Modes:
         half_turns = offset.pop(((generator(pi), 1),), fmpq(0))
         for m, c in algebra.as_polynomial(phase).items():
             add_term(offset, m, c)
-        angle = (frequency, algebra.linear(offset))
+        angle = (frequency, algebra.linear(normal(offset)))
         for r, c in enumerate(f.coeffs()):
             if len(powers) <= r:
                 powers.append(algebra.scaled(algebra.product(powers[-1], step), {ONE: fmpq(1, r)}))

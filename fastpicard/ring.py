@@ -9,8 +9,14 @@ Two kinds of generator obey a relation that multiplication applies at once:
 primes under a root, ``2**(1/2) * 2**(1/2) = 2``, and ``I * I = -1``.  Products
 of distinct fractional powers of primes are linearly independent over ``Q``
 (Besicovitch), so with symbols and roots alone equal means identical.
-Generators that are themselves sums, such as ``1/(b + c)``, may satisfy further
-relations; :func:`is_zero` settles those by clearing denominators.
+
+Two other kinds obey relations that are applied when equality is asked for.
+Cosines and sines of rational multiples of pi, and the roots among them, have a
+normal form, see :mod:`fastpicard.cosines` and :func:`normal`.  A root that is no
+square root of a rational lies in none of those fields, which are abelian, and
+(Kummer) stays independent.  Generators that are themselves sums, such as
+``1/(b + c)``, are multiplied out.  SymPy is asked only for what then remains,
+functions such as ``exp(a)``.
 """
 
 from __future__ import annotations
@@ -18,12 +24,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache
+from math import floor
 from typing import Any
 
 import sympy
 from flint import fmpq
 from sympy import Expr
 
+from fastpicard import cosines
 from fastpicard.errors import BadInputError
 
 Exponent = int | Fraction
@@ -35,6 +43,8 @@ ONE: Monomial = ()
 _expressions: list[Expr] = []
 _numbers: dict[Expr, int] = {}
 _related: set[int] = set()  # the generators with a relation: primes under a root, and I
+_cosines: dict[int, tuple[Fraction, Fraction]] = {}  # (x, e) of the generators whose power e is cos(pi x)
+_sums: dict[int, Polynomial] = {}  # what the generators are that are polynomials in others
 _UNIT = fmpq(1)
 
 
@@ -46,6 +56,9 @@ def generator(expression: Expr) -> int:
         _expressions.append(expression)
         if expression is sympy.I or expression.is_Integer:
             _related.add(number)
+        cosine = cosines.named_cosine(expression)
+        if cosine is not None:
+            _cosines[number] = cosine
     return number
 
 
@@ -95,8 +108,10 @@ def _whole(exponent: Exponent) -> Exponent:
     return int(exponent) if exponent.denominator == 1 else exponent
 
 
-def power(base: Expr, exponent: Exponent) -> Polynomial:
-    """``base**exponent`` for a generator base."""
+def power(base: Expr, exponent: Exponent, value: Polynomial | None = None) -> Polynomial:
+    """``base**exponent`` for a generator base; ``value`` is the base where it is a polynomial in other generators."""
+    if value:
+        _sums[generator(base)] = value
     factor, monomial = multiply_monomials(ONE, ((generator(base), exponent),))
     return {monomial: factor}
 
@@ -125,7 +140,7 @@ def reciprocal(terms: Polynomial) -> Polynomial:
 
     Sums of square roots are rationalised, ``1/(1 + sqrt(2)) = sqrt(2) - 1``.
     """
-    if not terms:
+    if is_zero(terms):
         raise BadInputError("the reciprocal of 0 does not exist.  Check for a frequency that cancels.")
     if len(terms) == 1:
         ((monomial, value),) = terms.items()
@@ -134,8 +149,8 @@ def reciprocal(terms: Polynomial) -> Polynomial:
     if all(_is_square_root(g, e) for monomial in terms for g, e in monomial):
         return _conjugate_reciprocal(terms)
     lead = terms[max(terms)]
-    primitive = to_expression({m: c / lead for m, c in terms.items()})
-    return {((generator(primitive), -1),): 1 / lead}
+    primitive = {m: c / lead for m, c in terms.items()}
+    return {m: c / lead for m, c in power(to_expression(primitive), -1, primitive).items()}
 
 
 def _is_square_root(number: int, exponent: Exponent) -> bool:
@@ -175,17 +190,106 @@ def symbols_of(monomials: Iterable[Monomial]) -> set[Any]:
     return set().union(*(_expressions[g].free_symbols for g in numbers))
 
 
+# -- equality ------------------------------------------------------------------
+
+
 def has_relations(monomials: Iterable[Monomial]) -> bool:
-    """Whether a generator occurs that distinct monomials may relate (a sum, a function of symbols)."""
+    """Whether a generator occurs that distinct monomials may relate (a cosine, a sum, a function of symbols)."""
     numbers = {g for monomial in monomials for g, _ in monomial}
-    return any(not (e.is_Symbol or e.is_Integer or e in (sympy.pi, sympy.E, sympy.I))
-               for e in map(expression_of, numbers))
+    return not all(map(_is_free, numbers))
+
+
+def _is_free(number: int) -> bool:
+    e = _expressions[number]
+    return bool(e.is_Symbol or e.is_Integer) or e in (sympy.pi, sympy.E, sympy.I)
 
 
 def is_zero(terms: Polynomial) -> bool:
     """Whether a polynomial vanishes identically, relations between its generators included."""
     if not terms or not has_relations(terms):
         return not terms
+    reduced = normal(_multiplied_out(terms))
+    if all(_is_free(g) or _cosine_power(g, e)[1] == 0 for monomial in reduced for g, e in monomial):
+        return not reduced
+    return _is_zero_to_sympy(reduced)
+
+
+def _multiplied_out(terms: Polynomial) -> Polynomial:
+    """The polynomial times the denominators it has, without generators that are sums but for roots of them."""
+    while True:
+        sums = {g for monomial in terms for g, e in monomial if g in _sums and floor(e)}
+        if not sums:
+            return terms
+        terms = _without_sum(terms, max(sums))
+
+
+def _without_sum(terms: Polynomial, number: int) -> Polynomial:
+    exponents = [dict(monomial).get(number, 0) for monomial in terms]
+    lowest = min(map(floor, exponents))
+    powers: list[Polynomial] = [{ONE: _UNIT}]
+    result: Polynomial = {}
+    for (monomial, value), exponent in zip(terms.items(), exponents, strict=True):
+        while len(powers) <= floor(exponent) - lowest:
+            powers.append(multiply(powers[-1], _sums[number]))
+        _, rest = multiply_monomials(monomial, ((number, -floor(exponent)),))
+        for m, c in multiply({rest: value}, powers[floor(exponent) - lowest]).items():
+            add_term(result, m, c)
+    return result
+
+
+def normal(terms: Polynomial) -> Polynomial:
+    """The same number, with the cosines of rational multiples of pi in normal form."""
+    result: Polynomial = {}
+    for monomial, value in terms.items():
+        for m, c in _normal_monomial(monomial).items():
+            add_term(result, m, value * c)
+    return result
+
+
+@lru_cache(maxsize=1 << 14)
+def _normal_monomial(monomial: Monomial) -> Polynomial:
+    """Its cosines, and the square roots of primes in their fields, are multiplied by product to sum."""
+    angles = [_cosines[g][0] for g, _ in monomial if g in _cosines]
+    if not angles:
+        return {monomial: _UNIT}
+    rest: list[tuple[int, Exponent]] = []
+    number: cosines.Cosines = {Fraction(0): _UNIT}
+    for g, e in monomial:
+        if g in _cosines:
+            whole, left = _cosine_power(g, e)
+            number = cosines.product(number, cosines.power(_cosines[g][0], whole))
+        elif 2 * e >= 1 and _expressions[g].is_Integer and _divides(int(_expressions[g]), angles):
+            number, left = cosines.product(number, cosines.root(int(_expressions[g]))), e - Fraction(1, 2)
+        else:
+            left = e
+        if left:
+            rest.append((g, _whole(left)))
+    result: Polynomial = {}
+    for parts, c in cosines.normal(number).items():
+        factor, m = multiply_monomials(tuple(rest), _monomial_of(parts))
+        add_term(result, m, c * factor)
+    return result
+
+
+def _divides(prime: int, angles: list[Fraction]) -> bool:
+    return any(x.denominator % prime == 0 for x in angles)
+
+
+def _cosine_power(number: int, exponent: Exponent) -> tuple[int, Exponent]:
+    """``(whole, left)``: the generator's power is the cosine's power ``whole`` times the generator's ``left``."""
+    if number not in _cosines:
+        return 0, exponent
+    own = _cosines[number][1]
+    whole = floor(exponent / own)
+    return whole, exponent - whole * own
+
+
+def _monomial_of(parts: tuple[Any, ...]) -> Monomial:
+    powers = [cosines.expression_of(part).as_base_exp() for part in parts]
+    return tuple(sorted((generator(base), fraction(exponent)) for base, exponent in powers))
+
+
+def _is_zero_to_sympy(terms: Polynomial) -> bool:
     numerator = sympy.fraction(sympy.together(to_expression(terms)))[0].expand()
     if numerator == 0:
         return True

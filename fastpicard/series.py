@@ -16,7 +16,7 @@ from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, evaluate, free_symbols
 from fastpicard.modes import Modes
 from fastpicard.reading import as_expression, as_finite, as_time, check_same_time, read, read_constant
-from fastpicard.ring import ONE, has_relations, rational
+from fastpicard.ring import ONE, rational
 from fastpicard.writing import write, write_at
 
 SHORT = 12  # terms printed before the rest is counted
@@ -160,10 +160,9 @@ class PoissonSeries:
         return NotImplemented
 
     def __hash__(self) -> int:
-        """Equal series have equal hashes: with relations between parameters, the time alone is safe."""
+        """Of the functions of time that occur: their coefficients have many forms, ``b/(b + c) + c/(b + c) = 1``."""
         if self._hash is None:
-            related = has_relations(m for _, _, m in self._modes)
-            self._hash = hash(self._t if related else (self._t, frozenset((k, str(f)) for k, f in self._modes.items())))
+            self._hash = hash((self._t, algebra.support(self._modes)))
         return self._hash
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -28,7 +28,23 @@ frequencies = st.one_of(plain_frequencies, plain_frequencies, other_frequencies)
 phases = st.one_of(
     st.just(S.Zero),
     st.sampled_from(
-        [S.Zero, phi, -phi, phi / 2, S.One, Rational(-1, 3), pi / 2, -pi, pi / 3, phi - pi / 4, -2 * t0]
+        [
+            S.Zero,
+            phi,
+            -phi,
+            phi / 2,
+            S.One,
+            Rational(-1, 3),
+            pi / 2,
+            -pi,
+            pi / 3,
+            phi - pi / 4,
+            -2 * t0,
+            pi / 5,
+            pi / 7,
+            2 * pi / 5 - phi,
+            3 * pi / 7,
+        ]
     ),
 )
 plain_constants = st.sampled_from([S.One, S.One, a, b, a * b, a**2, 1 / a, b / a**3])
@@ -36,6 +52,8 @@ other_constants = st.sampled_from(
     [
         sqrt(2),
         sqrt(6),
+        sqrt(5),
+        cos(pi / 7),
         pi,
         1 / pi,
         g / l,

@@ -184,14 +184,10 @@ def test_both_engines_agree_where_coefficients_are_unusual(P):
 # -- another origin of time ----------------------------------------------------------------
 
 
-# Not 7/5: cosines of 7 pi/5 are nested radicals, exact but slow to tell from zero.
-turns = st.sampled_from([S.One, S(2), S(-1), Rational(1, 2), Rational(-2, 3)])
-
-
 origins = st.sampled_from([S.One, pi, t0, Rational(-3, 2), t0 + pi, 2 * t0])
 
 
-@given(matrices(2, turns), vectors, origins, st.integers(0, 1))
+@given(matrices(2), vectors, origins, st.integers(0, 1))
 def test_iterates_from_another_time_start_there_and_obey_the_law(P, x0, origin, n):
     """X_{n+1}' = P X_n and X_n(t0) = x0, for numbers, multiples of pi and symbols."""
     before, now = fast_picard(P, t, x0, n, origin), fast_picard(P, t, x0, n + 1, origin)
@@ -208,7 +204,7 @@ def test_autonomous_systems_know_only_the_time_since_the_start(P, n):
     assert (shifted.as_matrix() - plain(t - t0)).expand() == sympy.zeros(2)
 
 
-@given(matrices(2, turns), plain_times, st.sampled_from([Rational(1, 2), Rational(-2), pi]))
+@given(matrices(2), plain_times, st.sampled_from([Rational(1, 2), Rational(-2), pi]))
 def test_shifting_the_system_shifts_the_iterate(P, time, origin):
     """Phi_n(t; t0) of P(t) is Phi_n(t - t0; 0) of P(t + t0), in thirty digits."""
     here = FundamentalMatrix(P, t, 2, origin).evaluate(time, VALUES, 30)
