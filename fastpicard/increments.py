@@ -212,14 +212,22 @@ def _integral(product: Rows, divisors: _Divisors) -> Rows:
 def without_frequencies(p: Problem, entry: Entry) -> Entry:
     """The entry after whole turns of every angle: only powers of time and phases remain."""
     result: Entry = {}
+    start_of = p.coordinates.without_frequency if p.coordinates.phases else _nowhere
     for monomial, (scale, rows) in entry.items():
         collapsed: Rows = {}
         for (kind, angle), row in rows.items():
-            start = p.coordinates.without_frequency(angle)
-            _add_rows(collapsed, {(kind, abs(start)): reflected(kind, row) if start < 0 else row})
+            start = start_of(angle)
+            if start < 0:
+                start, row = -start, reflected(kind, row)
+            old = collapsed.get((kind, start))
+            collapsed[kind, start] = row if old is None else old + row
         result[monomial] = scale, {(kind, start): row if start else mask(kind, row)
                                    for (kind, start), row in collapsed.items()}
     return result
+
+
+def _nowhere(angle: int) -> int:
+    return 0
 
 
 def to_modes(p: Problem, entry: Entry) -> Modes:

@@ -7,6 +7,7 @@ order of SymPy's ``Basic.compare`` is computed once per factor, as a plain tuple
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import factorial
 from typing import Any
 
@@ -67,6 +68,14 @@ def _keyed(factors: list[Expr]) -> Keyed:
     return tuple((order_key(e), e) for e in factors)
 
 
+@lru_cache(maxsize=1 << 14)
+def _factor(number: int, exponent: Any) -> tuple[tuple[Any, Expr], bool]:
+    """A power of a generator with its key, and whether SymPy leaves its products alone."""
+    e = expression_of(number) ** sympy.Rational(exponent)
+    base = e.base if e.is_Pow else e
+    return (order_key(e), e), base.is_Symbol or base is pi
+
+
 class _Writer:
     """Writes modes, remembering factors and their order."""
 
@@ -91,9 +100,8 @@ class _Writer:
     def monomial(self, monomial: Monomial) -> tuple[Keyed, bool]:
         """The factors of a monomial, and whether SymPy leaves their products alone."""
         if monomial not in self.monomials:
-            factors = [expression_of(g) ** sympy.Rational(e) for g, e in monomial]
-            plain = all((e.base if e.is_Pow else e).is_Symbol or (e.base if e.is_Pow else e) is pi for e in factors)
-            self.monomials[monomial] = _keyed(factors), plain
+            factors = [_factor(g, e) for g, e in monomial]
+            self.monomials[monomial] = tuple(factor for factor, _ in factors), all(plain for _, plain in factors)
         return self.monomials[monomial]
 
     def power(self, r: int) -> Keyed:
