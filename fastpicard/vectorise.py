@@ -321,7 +321,9 @@ def _with_bound(x: Any) -> tuple[float, float]:
     value = to_number(x, None)
     if not math.isfinite(value):
         return value, math.inf
-    return value, math.nextafter(to_number((x - arb(value)).abs_upper(), None), math.inf) if x != value else 0.0
+    if x == value:
+        return value, 0.0
+    return value, math.nextafter(to_number((x - arb(value)).abs_upper(), None), math.inf)
 
 
 def _by_balls(variable: Variable, columns: dict[Symbol, Array]) -> doubledouble.Variable:
