@@ -128,7 +128,7 @@ def test_floats_and_pairs_keep_their_proved_bounds(exponents, data):
 @given(exponent_sets, st.data())
 def test_below_the_limit_nothing_overflows_and_underflow_stays_within_its_bound(exponents, data):
     """Coefficients from denormal to huge, variables from tiny to the limit: finite, and right to the bound."""
-    c = [Fraction(data.draw(magnitudes(-1074, 800))) for _ in exponents]
+    c = [Fraction(data.draw(magnitudes(-1074, 800))) / 3 for _ in exponents]
     p = Polynomial(program(exponents), [pair_of(ci) for ci in c], [sum(m) for m in exponents],
                    [False] * len(exponents[0]))  # fmt: skip
     assume(p.limit() >= 0)
@@ -141,6 +141,14 @@ def test_below_the_limit_nothing_overflows_and_underflow_stays_within_its_bound(
     truth = run(p.steps, c, [Fraction(value) for value in x])
     W, lost = Fraction(float(p.sizes(variables, 1)[0])), Fraction(p.underflow(max(map(abs, x), default=1)))
     assert abs(Fraction(r) + Fraction(e) - truth) <= U * U * p.most * W * (1 + Fraction(1, 2**18)) + lost
+
+
+def test_what_underflow_loses_grows_with_the_powers_that_follow():
+    """A coefficient below all floats times 2**800: the value is lost, and the bound says so."""
+    p, x = Polynomial(program([(20,)]), [(0.0, 0.0)], [20], [False]), 2.0**40
+
+    assert p.limit() >= 40 and p.pairs([Variable(array(x), None)], 1)[0].tolist() == [0]
+    assert Fraction(1, 3 * 2**1074) * Fraction(x) ** 20 <= Fraction(p.underflow(x))
 
 
 def test_polynomials_out_of_range_have_no_limit():

@@ -55,6 +55,7 @@ def is_kept(found, bounds, truths):
         assert error <= Fraction(float(bound)), (value, bound, truth)
         if largest <= LARGEST:
             assert error <= 10 * ulp(largest), (value, truth)
+            assert bound <= 10.01 * ulp(largest), (value, bound)  # proved, not luck; the bound itself is rounded up
     return True
 
 
@@ -133,6 +134,14 @@ def test_the_arithmetic_is_the_cheapest_that_is_proved_to_do():
     assert route.tolist() == [FLOAT, PAIR, BALL, BALL, BALL]
     assert found[0].tolist() == [16, 2.0**-20, 2.0**-104, 1, 0]
     assert (bounds[0][2:] <= [0, 1e-38, 0]).all() and (bounds[0] <= 10 * np.spacing(found[0])).all()
+
+
+def test_balls_go_on_until_the_bound_is_there():
+    """sqrt(2) (a - b)**3 written out, where 90 bits cancel and 128 are not enough."""
+    f = vectorise(collapsed(sympy.expand(sqrt(2) * (a - b) ** 3)), [a, b], (), bound=True)
+    value, bound = f(1 + 2.0**-30, 1)
+
+    assert value == pytest.approx(2**0.5 * 2.0**-90, rel=1e-15) and bound <= np.spacing(value)
 
 
 def test_only_the_largest_entry_needs_its_last_digits():
