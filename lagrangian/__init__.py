@@ -11,6 +11,7 @@
 (-18*h*cos(tau)/7 + 18/(7*v**2), 2*pi)
 """
 
+from .chain import CompiledChain
 from .energy import Scene
 from .equations import EquationsOfMotion, euler_lagrange
 from .errors import (
@@ -32,6 +33,7 @@ from .normal_modes import NormalModes, normal_modes
 from .scene import Rod, Support
 
 __all__ = [
+    "CompiledChain",
     "DriveError",
     "EquationsOfMotion",
     "FirstOrderSystem",

@@ -17,14 +17,17 @@ it and ``Scene.lagrangian``, the article's ``L[N]``, has it not.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from sympy import Add, Integer, cos, latex, sin
 
+from .chain import CompiledChain
+from .constants import NAMES, substitution
 from .errors import SceneError
 from .scene import Arrangement
+from .shaking import shaking_of_expressions
 
 __all__ = ["K", "L", "Scene", "V", "v", "w"]
 
@@ -188,6 +191,29 @@ class Scene(Arrangement):
     def lagrangian(self) -> Any:
         """The article's ``L[N]`` (In[16]), less the energy of springs; J."""
         return L(self)
+
+    def compile(self, values: Mapping[Any, Any] | None = None, model: str | None = None) -> CompiledChain:
+        """This chain with numbers for its Symbols: accelerations in O(n), ready for :func:`lagrangian.simulate`.
+
+        ``values`` maps Symbols to numbers, taken exactly; ``model`` as in :class:`lagrangian.CompiledChain`.  A support
+        that moves in waves, ``c cos(qt) + s sin(qt)``, costs least.  Raises QuantityError where a Symbol has no number,
+        DriveError where the support moves by a function that is not elementary, TextError for text.
+
+        >>> from sympy import symbols
+        >>> from lagrangian import Rod
+        >>> m, l, g = symbols("m l g")
+        >>> chain = Scene([Rod.bob(m, l)] * 3).compile({m: 1, l: 2, g: 10})
+        >>> chain.model, chain.acceleration(0, [0.5, 0.5, 0.5], [0, 0, 0]).round(3)
+        ('bobs', array([2.397, 0.   , 0.   ]))
+        """
+        replace = substitution(values)
+        mass, length, center, gyration = ([replace(getattr(rod, name)) for rod in self.rods] for name in NAMES)
+        damping, springs = (None if constants is None else [replace(x) for x in constants]
+                            for constants in (self.damping, self.springs))
+        xi, eta = self.support_acceleration
+        shaking = shaking_of_expressions(replace(xi), replace(eta), self.t)
+        return CompiledChain(mass, length, center, gyration, replace(self.gravity), shaking, damping, springs,
+                             self.upright, model)
 
     def __repr__(self) -> str:
         rods = f"{len(self)} x {self.equal_rod}" if self.equal_rod and len(self) > 1 else f"{len(self)} rods"

@@ -1,0 +1,117 @@
+"""The number types that the recursions run on beside float64: mpmath numbers and python-flint balls.
+
+An :class:`Arithmetic` knows how to bring an exact SymPy number into its type and how to take sine and cosine;
+everything else is ``+ - * /``.  Nothing here touches a global precision: mpmath numbers carry their context,
+and balls are computed at the precision that is current where the caller computes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import flint
+import mpmath
+import numpy as np
+from sympy import Integer, N, Rational
+
+__all__ = ["Arithmetic", "Balls", "MPNumbers", "arithmetic_of"]
+
+
+class Arithmetic:
+    """What differs between number types."""
+
+    def number(self, exact: Any) -> Any:
+        """An exact SymPy number, rounded once (or enclosed)."""
+        raise NotImplementedError
+
+    def sines(self, x: Any) -> tuple[Any, Any]:
+        """``sin x, cos x``."""
+        raise NotImplementedError
+
+    def midpoint(self, x: Any) -> Any:
+        """``x`` without its radius, where it has one."""
+        return x
+
+    def array(self, numbers: Iterable[Any]) -> Any:
+        """Exact numbers, or numbers of any accepted kind, as an array of this type; shape (n,)."""
+        found = list(numbers)
+        out = np.empty(len(found), dtype=object)
+        for i, x in enumerate(found):
+            out[i] = self.coerced(x)
+        return out
+
+    def zeros(self, *shape: int) -> Any:
+        """An array of zeros of this type."""
+        out = np.empty(shape, dtype=object)
+        out.fill(self.number(Integer(0)))
+        return out
+
+    def coerced(self, x: Any) -> Any:
+        """A number of any accepted kind in this type."""
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class MPNumbers(Arithmetic):
+    """mpmath numbers of one context, whose precision they keep."""
+
+    context: Any
+
+    def number(self, exact: Any) -> Any:
+        if isinstance(exact, Rational):
+            return self.context.mpf(int(exact.p)) / int(exact.q)
+        return +self.context.make_mpf(N(exact, self.context.dps + 10)._mpf_)
+
+    def sines(self, x: Any) -> tuple[Any, Any]:
+        cosine, sine = self.context.cos_sin(x)
+        return sine, cosine
+
+    def coerced(self, x: Any) -> Any:
+        return self.context.convert(float(x) if isinstance(x, np.floating) else x)
+
+
+@dataclass(frozen=True)
+class Balls(Arithmetic):
+    """python-flint balls at the current precision: every result contains the true one."""
+
+    def number(self, exact: Any) -> Any:
+        if isinstance(exact, Rational):
+            return flint.arb(flint.fmpq(int(exact.p), int(exact.q)))
+        digits = int(flint.ctx.prec * 0.302) + 10
+        middle = N(exact, digits + 5)
+        ratio = flint.arb(_dyadic(middle._mpf_))
+        return ratio + flint.arb(0, 1) * ratio * flint.arb(10) ** -digits
+
+    def sines(self, x: Any) -> tuple[Any, Any]:
+        sine, cosine = x.sin_cos()
+        return sine, cosine
+
+    def midpoint(self, x: Any) -> Any:
+        return x.mid()
+
+    def coerced(self, x: Any) -> Any:
+        if isinstance(x, flint.arb):
+            return x
+        return flint.arb(_dyadic(x._mpf_)) if isinstance(x, mpmath.mpf) else flint.arb(x)
+
+
+def _dyadic(parts: Any) -> Any:
+    sign, mantissa, exponent, _ = parts
+    value = flint.arb(int(mantissa)) * flint.arb(2) ** int(exponent)
+    return -value if sign else value
+
+
+def arithmetic_of(*arrays: Any) -> Arithmetic | None:
+    """The arithmetic of the numbers given: balls if there is one, else mpmath numbers if there is one, else None."""
+    kinds = {}
+    for array in arrays:
+        if isinstance(array, np.ndarray) and array.dtype != object:
+            continue
+        for x in array if isinstance(array, (list, tuple, np.ndarray)) else [array]:
+            kinds[type(x)] = x
+    if flint.arb in kinds:
+        return Balls()
+    contexts = [x.context for x in kinds.values() if isinstance(x, mpmath.ctx_mp_python._mpf)]
+    return MPNumbers(contexts[0]) if contexts else None

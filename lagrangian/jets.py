@@ -1,0 +1,154 @@
+r"""Taylor series of functions of time: how a prescribed motion enters the Taylor stepper.
+
+A :class:`Jet` is ``x_0 + x_1 h + ... + x_p h**p`` with coefficients of any number type.  Products are
+convolutions, and every elementary function solves a linear differential equation, read as a recurrence:
+
+    y = exp x:   k y_k = sum_(i=1..k) i x_i y_(k-i)
+    s = sin x:   k s_k = sum i x_i c_(k-i),   c = cos x:   k c_k = -sum i x_i s_(k-i)
+    y = x**a:    k x_0 y_k = sum_(i=1..k) (a i - (k - i)) x_i y_(k-i)
+
+A SymPy expression is evaluated by walking its tree; no text is made of it and none is executed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import reduce
+from operator import add, mul
+from typing import Any
+
+import numpy as np
+from sympy import Add, E, Mul, Pow, cos, cosh, exp, log, sin, sinh, tan, tanh
+
+from .errors import DriveError
+
+__all__ = ["Jet", "evaluate"]
+
+Function = Callable[[Any], Any]
+
+
+class Jet:
+    """A truncated Taylor series; ``sines`` takes sine and cosine of one coefficient."""
+
+    __array_ufunc__ = None
+
+    def __init__(self, coefficients: list[Any], elementary: dict[str, Function]) -> None:
+        self.coefficients, self.elementary = coefficients, elementary
+
+    def _like(self, coefficients: list[Any]) -> Jet:
+        return Jet(coefficients, self.elementary)
+
+    def _other(self, other: Any) -> list[Any]:
+        zero = 0 * self.coefficients[0]
+        return other.coefficients if isinstance(other, Jet) else [other + zero] + [zero] * (len(self.coefficients) - 1)
+
+    def __add__(self, other: Any) -> Jet:
+        return self._like([x + y for x, y in zip(self.coefficients, self._other(other), strict=True)])
+
+    def __mul__(self, other: Any) -> Jet:
+        if not isinstance(other, Jet):
+            return self._like([x * other for x in self.coefficients])
+        x, y = self.coefficients, other.coefficients
+        return self._like([reduce(add, (x[i] * y[k - i] for i in range(k + 1))) for k in range(len(x))])
+
+    def __neg__(self) -> Jet:
+        return self._like([-x for x in self.coefficients])
+
+    def __sub__(self, other: Any) -> Jet:
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Jet:
+        return self.__neg__().__add__(other)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __pow__(self, a: Any) -> Jet:
+        if isinstance(a, int) and a >= 0:
+            one = self._like(self._other(1 + 0 * self.coefficients[0]))
+            power: Jet = reduce(mul, [self] * a, one)
+            return power
+        x = self.coefficients
+        y = [x[0] ** a]
+        for k in range(1, len(x)):
+            y.append(reduce(add, ((a * i - (k - i)) * x[i] * y[k - i] for i in range(1, k + 1))) / (k * x[0]))
+        return self._like(y)
+
+    def __truediv__(self, other: Any) -> Jet:
+        return self.__mul__(other.__pow__(-1) if isinstance(other, Jet) else 1 / other)
+
+    def __rtruediv__(self, other: Any) -> Jet:
+        return self.__pow__(-1).__mul__(other)
+
+    def _solve(self, starts: list[Any], rates: list[tuple[int, int]]) -> list[Jet]:
+        """Solve ``y_a' = sign x' y_b`` for all pairs ``rates[a] = (b, sign)`` at once."""
+        x, found = self.coefficients, [[y] for y in starts]
+        for k in range(1, len(x)):
+            new = [sign * reduce(add, (i * x[i] * found[b][k - i] for i in range(1, k + 1))) / k for b, sign in rates]
+            for series, y in zip(found, new, strict=True):
+                series.append(y)
+        return [self._like(y) for y in found]
+
+    def sin(self) -> Jet:
+        return self._solve([self.elementary["sin"](self.coefficients[0]), self.elementary["cos"](self.coefficients[0])],
+                           [(1, 1), (0, -1)])[0]
+
+    def cos(self) -> Jet:
+        return self._solve([self.elementary["sin"](self.coefficients[0]), self.elementary["cos"](self.coefficients[0])],
+                           [(1, 1), (0, -1)])[1]
+
+    def exp(self) -> Jet:
+        return self._solve([self.elementary["exp"](self.coefficients[0])], [(0, 1)])[0]
+
+    def sqrt(self) -> Jet:
+        half = (1 + 0 * self.coefficients[0]) / 2
+        return self.__pow__(half)
+
+    def log(self) -> Jet:
+        x, y = self.coefficients, [self.elementary["log"](self.coefficients[0])]
+        for k in range(1, len(x)):
+            past = reduce(add, (i * y[i] * x[k - i] for i in range(1, k)), 0 * x[0])
+            y.append((k * x[k] - past) / (k * x[0]))
+        return self._like(y)
+
+
+def _elementary(name: str) -> Function:
+    def function(x: Any) -> Any:
+        context = getattr(x, "context", None)
+        if context is not None:
+            return getattr(context, name)(x)  # an mpmath number, whose own .exp is its exponent
+        method = getattr(x, name, None)
+        return method() if method is not None else getattr(np, name)(x)
+    return function
+
+
+FUNCTIONS: dict[str, Function] = {name: _elementary(name) for name in ("sin", "cos", "exp", "log", "sqrt")}
+_SIMPLE = {sin: "sin", cos: "cos", exp: "exp", log: "log"}
+_REWRITTEN = {tan: lambda x: sin(x) / cos(x), sinh: lambda x: (exp(x) - exp(-x)) / 2,
+              cosh: lambda x: (exp(x) + exp(-x)) / 2, tanh: lambda x: 1 - 2 / (exp(2 * x) + 1)}
+
+
+def evaluate(expression: Any, t: Any, value: Any, number: Function) -> Any:
+    """``expression`` at ``t = value``, a number or a :class:`Jet`; ``number`` brings exact constants into the type.
+
+    Raises DriveError at anything but sums, products, powers and elementary functions.
+    """
+    if expression == t:
+        return value
+    if t not in expression.free_symbols:
+        if not expression.is_number:
+            raise DriveError(f"the drive is a function of {t} alone, and {expression} is in it: give it a value.")
+        return number(expression)
+    if isinstance(expression, (Add, Mul)):
+        parts = [evaluate(part, t, value, number) for part in expression.args]
+        return reduce(add if isinstance(expression, Add) else mul, parts)
+    if isinstance(expression, exp) or (isinstance(expression, Pow) and expression.base == E):
+        return FUNCTIONS["exp"](evaluate(expression.exp, t, value, number))
+    if isinstance(expression, Pow) and t not in expression.exp.free_symbols:
+        base = evaluate(expression.base, t, value, number)
+        return base ** (int(expression.exp) if expression.exp.is_Integer else number(expression.exp))
+    if type(expression) in _SIMPLE:
+        return FUNCTIONS[_SIMPLE[type(expression)]](evaluate(expression.args[0], t, value, number))
+    if type(expression) in _REWRITTEN:
+        return evaluate(_REWRITTEN[type(expression)](expression.args[0]), t, value, number)
+    raise DriveError(f"the drive contains {expression}, whose Taylor series is not known here: write it with sums, "
+                     f"products, powers, sin, cos, exp, log, or give support_acceleration as a function of t.")

@@ -1,0 +1,83 @@
+"""Many chains at once: the recursion of :mod:`lagrangian.recursion` with one chain in every lane of a vector register.
+
+The chains have the same rods and each its own state, arrays of shape (n, chains).  They are taken LANES at a
+time; whatever is carried from link to link is one flat array whose rows lie LANES apart, a constant known when
+the loops are translated, so that the compiler sees that rows do not overlap and the loop over lanes becomes
+vector instructions.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .angles import difference, sines
+from .recursion import force, inertia, torque, turned_force, turned_inertia
+
+__all__ = ["LANES", "accelerate_lanes"]
+
+LANES = 32
+
+
+def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:
+    """Write ``theta''`` of all chains to ``out``; float64 only.
+
+    Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 5 * LANES).  All chains are
+    on one support, with acceleration ``(ax, ay)``.  Angles at most :data:`lagrangian.angles.LARGEST` / 2.
+    """
+    n, chains = theta.shape
+    held = np.empty(8 * LANES)
+    for first in range(0, chains, LANES):
+        width = min(LANES, chains - first)
+        held[:] = 0.0
+        for i in range(n):
+            k = n - 1 - i
+            o = work[k]
+            here = theta[k, first:first + width]
+            if k > 0:
+                before = theta[k - 1, first:first + width]
+                for j in range(width):
+                    d, e = difference(here[j], before[j])
+                    o[3 * LANES + j], o[4 * LANES + j] = sines(d, e)
+            else:
+                for j in range(width):
+                    o[3 * LANES + j], o[4 * LANES + j] = sines(here[j], 0.0)
+            m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
+            J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
+            rate = omega[k, first:first + width]
+            for j in range(width):
+                Puu, Pun, Pnn, Delta = held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j]
+                qn = held[5 * LANES + j]
+                r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
+                f0, f1, f2, f3 = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, held[4 * LANES + j], qn,
+                                       held[6 * LANES + j], held[7 * LANES + j], rate[j] * rate[j])
+                o[j] = J * r
+                o[LANES + j] = l * l * Pun * r
+                if tau is None:
+                    o[2 * LANES + j] = l * l * qn * r
+                else:
+                    t = tau[k, first + j]
+                    o[2 * LANES + j] = (l * qn - t) * l * r
+                    g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
+                    f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
+                s, c = o[3 * LANES + j], o[4 * LANES + j]
+                Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
+                f0, f1, f2, f3 = turned_force(s, c, f0, f1, f2, f3)
+                held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j] = Puu, Pun, Pnn, det
+                held[4 * LANES + j], held[5 * LANES + j] = f0, f1
+                held[6 * LANES + j], held[7 * LANES + j] = f2, f3
+        for j in range(width):
+            held[j], held[LANES + j] = ay, ax
+        for k in range(n):
+            o = work[k]
+            l = rods[k, 1]
+            per_length = 1.0 / l
+            rate, result = omega[k, first:first + width], out[k, first:first + width]
+            for j in range(width):
+                s, c, tu, tn = o[3 * LANES + j], o[4 * LANES + j], held[j], held[LANES + j]
+                au, an = tu * c + tn * s, tn * c - tu * s
+                tu = au - l * rate[j] * rate[j]
+                tn = o[j] * an - o[2 * LANES + j] - o[LANES + j] * tu
+                result[j] = (tn - an) * per_length
+                held[j], held[LANES + j] = tu, tn

@@ -1,0 +1,79 @@
+"""Plain Python functions as machine code, where numba is installed; the only file that knows of numba.
+
+The recursions of this package are written once, as plain functions of numbers and arrays.  Run as they are
+they take Python floats, NumPy arrays, mpmath numbers and python-flint balls; :func:`machine` translates the
+same source for float64.  Translation happens at the first call and is kept on disk for later processes.
+
+A function and all that it calls are known to the cache under a digest of their instructions and constants,
+so that code from an older version is never run.  Products and sums may be contracted (``a*b + c`` rounded
+once); they are never reordered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from hashlib import sha256
+from importlib import import_module
+from importlib.util import find_spec
+from types import CodeType, FunctionType
+from typing import Any, TypeVar
+
+__all__ = ["has_numba", "inlined", "machine"]
+
+AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
+PACKAGE = __name__.rpartition(".")[0]
+_INLINED: set[Callable[..., Any]] = set()
+
+
+def inlined(function: AnyFunction) -> AnyFunction:
+    """Mark a short function that :func:`machine` shall copy into its callers, so that loops over it vectorise."""
+    _INLINED.add(function)
+    return function
+
+
+def has_numba() -> bool:
+    """Whether numba is installed; without it everything runs, some hundred times slower."""
+    return find_spec("numba") is not None
+
+
+@cache
+def machine(function: Callable[..., Any]) -> Callable[..., Any]:
+    """``function`` translated for float64 and int64 arguments, or itself where numba is not installed."""
+    if not has_numba():
+        return function
+    return _translated(function)
+
+
+@cache
+def _translated(function: FunctionType) -> Callable[..., Any]:
+    numba = import_module("numba")
+    names = {name: _translated(callee) for name, callee in _callees(function)}
+    copy = FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__,
+                        function.__defaults__)
+    copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{_digest(function)}"
+    options = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy", "nogil": True}
+    if function in _INLINED:
+        options["forceinline"] = True
+    return numba.njit(**options)(copy)  # type: ignore[no-any-return]
+
+
+def _callees(function: FunctionType) -> Iterator[tuple[str, FunctionType]]:
+    """The functions of this package that ``function`` calls by name."""
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if isinstance(value, FunctionType) and value.__module__.startswith(PACKAGE):
+            yield name, value
+
+
+def _digest(function: FunctionType) -> str:
+    parts = [repr(_contents(function.__code__))]
+    parts += [f"{name}={function.__globals__[name]!r}" for name in function.__code__.co_names
+              if isinstance(function.__globals__.get(name), (int, float, tuple))]
+    parts += [_digest(callee) for _, callee in _callees(function)]
+    return sha256("\n".join(parts).encode()).hexdigest()[:12]
+
+
+def _contents(code: CodeType) -> tuple[Any, ...]:
+    constants = tuple(c for c in code.co_consts if not isinstance(c, CodeType))
+    return code.co_code, constants, code.co_names, code.co_varnames

@@ -1,0 +1,149 @@
+r"""The acceleration of the support, as numbers and as Taylor series.
+
+Constants and waves, ``c cos(q t) + s sin(q t)``, have their Taylor coefficients in closed form,
+
+    [cos(q (t + h))]_j = q**j/j! cos(q t + j pi/2),
+
+one sine and one cosine a step, computed where the steps are.  Any other function of t is called with a
+:class:`~lagrangian.jets.Jet` in place of t; so it may use ``+ - * / **`` and numpy's sin, cos, exp, log, sqrt.
+A function that cannot be called so (one that uses :mod:`math`, a table, branches) has no Taylor series here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from sympy import Add, Expr, Integer, Mul, cos, expand, sin
+
+from .arithmetic import Arithmetic
+from .errors import DriveError
+from .jets import FUNCTIONS, Jet, evaluate
+from .scene import quantity, refuse_text
+
+__all__ = ["Shaking", "shaking_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class Shaking:
+    """``(xi'', eta'')`` as ``constant + sum over waves``, or as a function of time.
+
+    Attributes
+    ----------
+    constant : pair of exact numbers; m/s**2
+    waves : tuple of ``(q, cx, sx, cy, sy)``, exact: ``xi'' += cx cos qt + sx sin qt`` and so eta''; rad/s, m/s**2
+    function : None, or ``function(t, number)`` giving the whole pair
+    """
+
+    constant: tuple[Any, Any] = (Integer(0), Integer(0))
+    waves: tuple[tuple[Any, ...], ...] = ()
+    function: Callable[..., Any] | None = None
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the acceleration is 0 at all times."""
+        return self.steady and not any(self.constant)
+
+    @property
+    def steady(self) -> bool:
+        """Whether the acceleration is constant."""
+        return not self.waves and self.function is None
+
+    @property
+    def floats(self) -> tuple[Any, Any]:
+        """``constant`` of shape (2,) and ``waves`` of shape (w, 5) as float64."""
+        return (np.array([_float(x) for x in self.constant]),
+                np.array([[_float(x) for x in wave] for wave in self.waves]).reshape(-1, 5))
+
+    def at(self, t: Any, arithmetic: Arithmetic | None = None) -> tuple[Any, Any]:
+        """The pair at a time, as floats or in ``arithmetic``."""
+        number = arithmetic.number if arithmetic else _float
+        if self.function is not None:
+            ax, ay = self.function(t, number)
+            return ax, ay
+        ax, ay = (number(x) for x in self.constant)
+        for wave in self.waves:
+            q, cx, sx, cy, sy = (number(x) for x in wave)
+            s, c = arithmetic.sines(q * t) if arithmetic else (np.sin(q * t), np.cos(q * t))
+            ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)
+        return ax, ay
+
+    def series(self, t: Any, order: int, arithmetic: Arithmetic | None = None) -> tuple[list[Any], list[Any]]:
+        """Taylor coefficients 0, ..., order about ``t`` of both components.  Raises DriveError where there are none."""
+        number = arithmetic.number if arithmetic else _float
+        zero, one = number(Integer(0)), number(Integer(1))
+        time = Jet([t, one, *[zero] * (order - 1)][: order + 1], FUNCTIONS)
+        try:
+            pair = self.function(time, number) if self.function is not None else self._waves(time, number)
+            parts = [part if isinstance(part, Jet) else time * zero + part for part in pair]
+        except (TypeError, AttributeError, ValueError) as refusal:
+            raise DriveError(
+                f"the Taylor stepper calls support_acceleration with a power series in place of t, and it answers "
+                f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's sin, cos, exp, log, sqrt, "
+                f"or choose another method, such as method='DOP853'.") from refusal
+        return parts[0].coefficients, parts[1].coefficients
+
+    def _waves(self, time: Any, number: Any) -> tuple[Any, Any]:
+        parts = [time * number(Integer(0)) + number(x) for x in self.constant]
+        for wave in self.waves:
+            q, *amplitudes = (number(x) for x in wave)
+            c, s = (time * q).cos(), (time * q).sin()
+            parts[0] += c * amplitudes[0] + s * amplitudes[1]
+            parts[1] += c * amplitudes[2] + s * amplitudes[3]
+        return parts[0], parts[1]
+
+
+def _float(exact: Any) -> float:
+    return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30))
+
+
+def shaking_of(given: Any) -> Shaking:
+    """A pair of numbers, or a function of t that gives one.  Raises TextError, DriveError."""
+    refuse_text(given, "support_acceleration")
+    if isinstance(given, Shaking):
+        return given
+    if callable(given):
+        return Shaking(function=lambda t, number: given(t))
+    try:
+        ax, ay = given
+    except (TypeError, ValueError):
+        raise DriveError(f"support_acceleration is {given!r}: give the pair (xi'', eta''), or a function of t that "
+                         f"gives one.") from None
+    return Shaking((quantity(ax, "support_acceleration[0]"), quantity(ay, "support_acceleration[1]")))
+
+
+def shaking_of_expressions(xi: Any, eta: Any, t: Any) -> Shaking:
+    """Two SymPy accelerations in the Symbol t, all other Symbols replaced already."""
+    try:
+        constant: list[Any] = [Integer(0), Integer(0)]
+        waves: dict[Any, list[Any]] = {}
+        for part, expression in enumerate((xi, eta)):
+            for term in Add.make_args(expand(expression)):
+                _add_term(term, t, part, constant, waves)
+        return Shaking((constant[0], constant[1]), tuple((q, *w) for q, w in waves.items()))
+    except _NotAWave:
+        return Shaking(function=lambda time, number: (evaluate(xi, t, time, number), evaluate(eta, t, time, number)))
+
+
+class _NotAWave(Exception):
+    """A term that is neither constant nor a wave."""
+
+
+def _add_term(term: Expr, t: Any, part: int, constant: list[Any], waves: dict[Any, list[Any]]) -> None:
+    factor, rest = term.as_independent(t, as_Add=False)
+    if rest == 1:
+        constant[part] += factor
+        return
+    if isinstance(rest, Mul) or not isinstance(rest, (cos, sin)):
+        raise _NotAWave
+    angle = expand(rest.args[0])
+    q = angle.coeff(t, 1)
+    phase = expand(angle - q * t)
+    if t in phase.free_symbols or t in q.free_symbols:
+        raise _NotAWave
+    wave = waves.setdefault(q, [Integer(0)] * 4)
+    c, s = (cos(phase), -sin(phase)) if isinstance(rest, cos) else (sin(phase), cos(phase))
+    wave[2 * part] += factor * c
+    wave[2 * part + 1] += factor * s
