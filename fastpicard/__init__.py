@@ -26,6 +26,8 @@ from fastpicard.mathieu import mathieu_a, mathieu_b
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.picard import FundamentalMatrix, PicardIterate, fast_picard, picard
 from fastpicard.series import PoissonSeries
+from fastpicard.spectrum import Multiplier
+from fastpicard.stability import Verdict
 
 __version__ = "0.1.0"
 
@@ -36,12 +38,14 @@ __all__ = [
     "FloquetMatrix",
     "FundamentalMatrix",
     "MissingParameterError",
+    "Multiplier",
     "NotInFamilyError",
     "NotPeriodicError",
     "PicardIterate",
     "PoissonSeries",
     "SeriesMatrix",
     "ShapeError",
+    "Verdict",
     "fast_picard",
     "gather",
     "mathieu_a",

@@ -28,7 +28,7 @@ from sympy import Expr, Symbol
 
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.modes import COS, Key, Linear, Modes
-from fastpicard.ring import Monomial, expression_of, rational, symbols_of
+from fastpicard.ring import Monomial, Polynomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
 Values = Mapping[Any, Any]
@@ -157,6 +157,8 @@ def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
 
 
 def _power(base: Any, exponent: Any, e: Expr) -> Any:
+    if e.is_Integer and e > 0 and base.mid() == 0:  # FLINT gives nan for powers of a ball around 0
+        return arb(0, abs(base).upper() ** int(e))
     if e.is_Integer:
         return base ** int(e)
     return base.root(int(e.q)) ** int(e.p) if e.is_Rational and e.q < 64 else (exponent * base.log()).exp()
@@ -200,6 +202,10 @@ class Point:
     def linear(self, form: Linear) -> Any:
         """The value of a linear combination."""
         return sum((self.monomial(m) * fmpq(c.numerator, c.denominator) for m, c in form), arb(0))
+
+    def polynomial(self, terms: Polynomial) -> Any:
+        """The value of a polynomial in the ring."""
+        return sum((self.monomial(m) * c for m, c in terms.items()), arb(0))
 
     def wave(self, angle: Any) -> Any:
         """``exp(i (q t + phi))``."""
@@ -292,6 +298,20 @@ def to_number(x: Any, digits: int | None) -> Any:
     if digits is None:
         return libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "n"))
     return mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), libmp.dps_to_prec(digits), "n"))
+
+
+def to_complex(z: Any, digits: int | None) -> Any:
+    """The midpoint of a complex ball as complex, or as mpc with the digits asked for."""
+    real, imag = to_number(z.real, digits), to_number(z.imag, digits)
+    return complex(real, imag) if digits is None else mpmath.mp.make_mpc((real._mpf_, imag._mpf_))
+
+
+def upper_float(x: Any) -> float:
+    """The least float that is not below an exact ball; ``inf`` beyond all floats."""
+    if not x.is_finite():
+        return math.inf
+    mantissa, exponent = x.upper().man_exp()
+    return float(libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "c"), rnd="c"))
 
 
 def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, digits: int | None) -> list[Any]:

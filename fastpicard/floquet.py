@@ -9,32 +9,42 @@ sine 0, and what is left of the iterate is a polynomial in the parameters and ``
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
+from math import gcd
 from typing import Any
 
-import mpmath
 import sympy
-from flint import fmpq
+from flint import arb, ctx, fmpq
+from mpmath.libmp import dps_to_prec
 from sympy import Expr, ImmutableMatrix, Symbol, pi
 
 from fastpicard import modes as algebra
-from fastpicard.errors import BadInputError, NotPeriodicError
-from fastpicard.evaluate import Values, check_digits, numpy
+from fastpicard.enclosure import over_period
+from fastpicard.errors import BadInputError, BadTypeError, NotPeriodicError
+from fastpicard.evaluate import Point, Values, ball, check_digits, exact_number, to_complex, upper_float
+from fastpicard.harmonics import Harmonics, harmonics, is_box, numbers_in
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, read_matrix
 from fastpicard.modes import Modes
 from fastpicard.picard import Increments, check_order, first_increments, identity_columns
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, read_constant
-from fastpicard.ring import ONE, Polynomial, generator, multiply, to_expression
+from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
+from fastpicard.ring import ONE, Polynomial, generator, multiply, symbols_of, to_expression
+from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_form
+from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import Collapsed, vectorise
 from fastpicard.writing import write
+
+_BOUND_BITS = 256  # the precision of P and T where a bound is asked for
 
 
 class FloquetMatrix:
     """``Phi_n(T)``: the n-th exact Picard iterate of the Floquet matrix, a polynomial in the parameters and ``T``.
 
-    Immutable.  Exact for the n-th iterate; how far that is from the true Floquet
-    matrix depends on the parameters and is not told by any number of digits.
+    Immutable.  Exact for the n-th iterate: :meth:`as_matrix`, :meth:`trace`, :meth:`evaluate` and
+    :meth:`trace_at` speak of that.  How far it is from the true Floquet matrix depends on the parameters
+    and is bounded by :meth:`remainder`; :meth:`enclosure`, :meth:`multipliers` and :meth:`verdict` speak
+    of the true one, whatever ``n`` is.
 
     Parameters
     ----------
@@ -72,12 +82,11 @@ class FloquetMatrix:
         matrix = read_matrix(P, as_time(t))
         order = check_order(n)
         length = check_period(matrix, period)
-        self._fill(t, order, as_expression(period), matrix.shape, length,
+        self._fill(matrix, order, as_expression(period), length,
                    first_increments(matrix, identity_columns(matrix.shape[0]), order))
 
-    def _fill(self, t: Symbol, n: int, period: Expr, shape: tuple[int, int], length: Polynomial,
-              found: Increments) -> None:
-        self._t, self._n, self._period, self._shape = t, n, period, shape
+    def _fill(self, P: SeriesMatrix, n: int, period: Expr, length: Polynomial, found: Increments) -> None:
+        self._P, self._t, self._n, self._period, self._shape = P, P.t, n, period, P.shape
         self._length, self._increments = length, found
         self._powers: list[Polynomial] = [{ONE: fmpq(1)}]  # T**r / r!
         for r in range(1, n + 1):
@@ -107,7 +116,7 @@ class FloquetMatrix:
     def to_order(self, n: int) -> FloquetMatrix:
         """The same for order ``n``, at the cost of the increments that are new."""
         new = object.__new__(FloquetMatrix)
-        new._fill(self._t, check_order(n), self._period, self._shape, self._length, self._increments.to_order(n))
+        new._fill(self._P, check_order(n), self._period, self._length, self._increments.to_order(n))
         return new
 
     # -- exact ---------------------------------------------------------------
@@ -170,21 +179,207 @@ class FloquetMatrix:
         """The trace of the n-th iterate, float or mpf, every digit asked for correct."""
         return self._collapsed_trace.at(values, digits)[0]
 
-    def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
-        """The eigenvalues of the n-th iterate, complex numbers sorted by absolute value, largest first.
+    # -- the truth -----------------------------------------------------------
 
-        Rounded, not bounded: of a double multiplier about half the digits are right.
+    @classmethod
+    def for_accuracy(cls, P: Any, t: Symbol, values: Values | None, tol: Any, period: Any = 2 * pi) -> FloquetMatrix:
+        """The iterate of the smallest order whose proved :meth:`remainder` is at most ``tol``.
+
+        ``values`` gives every parameter a number, a ball, or an interval ``(lo, hi)``: the bound holds on the
+        whole box.  Every higher order meets ``tol`` as well.  The other arguments are those of the class.
+
+        Raises
+        ------
+        BadInputError
+            if ``tol`` is not positive.
+
+        Examples
+        --------
+        >>> from sympy import Matrix, cos
+        >>> from sympy.abc import a, b, t
+        >>> P = Matrix([[0, 1], [-a - b*cos(t), 0]])
+        >>> FloquetMatrix.for_accuracy(P, t, {a: -0.1, b: 0.55}, 1e-12).n
+        22
+        >>> FloquetMatrix.for_accuracy(P, t, {a: (-1, 1), b: (0, 1)}, 1e-12).n
+        42
         """
-        if check_digits(digits) is None:
-            found = numpy().linalg.eigvals(self.evaluate(values)).tolist()
-        else:
-            assert digits is not None
-            context = mpmath.mp.clone()
-            context.dps = 2 * digits + 10
-            matrix = context.matrix(self.evaluate(values, 2 * digits + 10).tolist())
-            found = context.eig(matrix, left=False, right=False)
-            found = [context.mpc(x) for x in found]
-        return sorted(found, key=abs, reverse=True)
+        first = cls(P, t, 0, period)
+        limit = exact_number(tol, "tol")
+        if not ball(limit) > 0:
+            raise BadInputError(f"tol must be positive, but it is {tol}.  Use 1e-12, say.")
+        exact = first._numbers(values)
+        with ctx.workprec(_BOUND_BITS):
+            return first.to_order(smallest_order(*first._at(exact), ball(limit)))
+
+    def _numbers(self, values: Values | None) -> dict[Any, Any]:
+        return numbers_in(self._P, values, symbols_of(self._length))
+
+    def _at(self, exact: Mapping[Any, Any]) -> tuple[Harmonics, Any]:
+        """``P`` and ``T`` in balls of the working precision."""
+        return harmonics(self._P, exact), Point(arb(0), exact).polynomial(self._length)
+
+    def remainder(self, values: Values | None = None, entrywise: bool = False) -> Any:
+        """A rigorous upper bound of ``|Phi(T) - Phi_n(T)|``, the iterate's distance from the truth.
+
+        Parameters
+        ----------
+        values : {Symbol: number, ball, or interval (lo, hi)} for every parameter
+            for balls and intervals the bound holds on the whole box.
+        entrywise : bool
+            True for an array of bounds, one for each entry.
+
+        Returns
+        -------
+        float, rounded up: a bound of the largest row sum of ``|Phi - Phi_n|``, hence of every entry;
+        ``inf`` beyond the range of floats.
+
+        Notes
+        -----
+        The smaller of two bounds for each entry (module ``remainder``): the a-priori sum of
+        ``(Pbar T)**k / k!`` over ``k > n``, and the a-posteriori one, which computes the next increments at
+        these parameters and is the true error to a few percent at points.  It takes some 0.1 s.
+
+        Examples
+        --------
+        >>> from sympy import Matrix, cos
+        >>> from sympy.abc import a, b, t
+        >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 20)
+        >>> F.remainder({a: -0.1, b: 0.55}) < 1e-11 < 1 < F.remainder({a: 2.25, b: 0.1})
+        True
+        """
+        exact = self._numbers(values)
+        with ctx.workprec(_BOUND_BITS):
+            bound = a_posteriori(*self._at(exact), self._n)
+            if entrywise:
+                return number_matrix([upper_float(x) for x in bound.entries()], self._shape, None)
+            return upper_float(largest_row_sum(bound))
+
+    def enclosure(self, values: Values | None = None, digits: int = 15) -> Any:
+        """A python-flint ``arb_mat`` that contains the true Floquet matrix of ``x' = P(t) x``.
+
+        Parameters
+        ----------
+        values : {Symbol: number, ball, or interval (lo, hi)} for every parameter
+        digits : int
+            every radius is at most ``10**-digits`` of its entry; for entries below ``10**-digits`` of the
+            largest one, ``10**-digits`` of that bound.
+
+        Raises
+        ------
+        BadInputError
+            if the parameters are balls too wide for the digits.
+        MissingParameterError
+            if a parameter has no value.
+
+        Notes
+        -----
+        Independent of ``n``: the equation is integrated by Taylor polynomials whose defect is bounded, over half a
+        period where ``P`` allows; steps, orders and precision follow from the digits.  Some 5 ms a point for
+        Mathieu's equation and 30 digits, 0.2 s at ``a = 4000``.
+
+        Examples
+        --------
+        >>> from sympy import Matrix, cos
+        >>> from sympy.abc import a, b, t
+        >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 0)
+        >>> print(F.enclosure({a: -0.1, b: 0.55}, digits=20)[0, 1].str(20))
+        [18.657723844543385212 +/- 3.39e-21]
+        """
+        exact = self._numbers(values)
+        wanted = check_digits(digits)
+        if wanted is None:
+            raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
+        return over_period(lambda: self._at(exact), self._turns, wanted)
+
+    @cached_property
+    def _turns(self) -> int:
+        """How many whole periods of ``P`` there are in ``T``."""
+        frequencies = {angle[0] for row in self._P.rows for modes in row for _, angle, _ in modes if angle[0]}
+        return max(1, gcd(*(int(_turns(q, self._length)[ONE].p) for q in frequencies)))
+
+    def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, Any]:
+        """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic form if there is one."""
+        form = symplectic_form(self._P, exact)
+        return form is not None or (self._shape[0] % 2 == 0 and self._at(exact)[0].reversal is not None), form
+
+    def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
+        """The eigenvalues of the true Floquet matrix, complex or mpc, sorted by modulus, largest first.
+
+        All digits are right.  Where ``P`` is Hamiltonian or reversible they come in pairs: number ``k`` from the
+        front is the reciprocal of number ``k`` from the back, and what is proved to be on the unit circle is reported
+        as ``cos + i sin`` there; :meth:`multiplier_enclosures` tells which are.
+
+        Raises
+        ------
+        BadInputError
+            if parameters are balls too wide for the digits.
+        """
+        wanted = check_digits(digits)
+        found = self.multiplier_enclosures(values, 17 if wanted is None else wanted)
+        return [to_complex(m.ball, wanted) for m in found]
+
+    def multiplier_enclosures(self, values: Values | None = None, digits: int = 15) -> list[Multiplier]:
+        """The multipliers of the true Floquet matrix in balls (``acb``), each with what is proved of its modulus.
+
+        Parameters and order as :meth:`multipliers`; ``digits`` counts decimals relative to the multiplier's modulus.
+        Of a multiplier that cannot be told from a double one the ball contains both; its digits cost twice
+        the precision.
+        """
+        wanted = check_digits(digits)
+        if wanted is None:
+            raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
+        exact = self._numbers(values)
+        paired, _ = self._structure(exact)
+        tried = wanted + 5
+        while True:
+            matrix = self.enclosure(values, tried)
+            with ctx.workprec(dps_to_prec(tried) + 64):
+                try:
+                    found = reciprocal_multipliers(matrix) if paired else general_multipliers(matrix)
+                except ValueError:  # not isolated at this precision
+                    found = []
+                if found and all(m.digits >= wanted for m in found):
+                    return found
+            if tried > 12 * wanted + 200:
+                raise BadInputError(f"the multipliers have not {wanted} digits with {tried} digits of the Floquet "
+                                    "matrix: several coincide or nearly so.  Ask for fewer digits.")
+            tried *= 2
+
+    def verdict(self, values: Values | None = None) -> Verdict:
+        """Whether the zero solution of ``x' = P(t) x`` is stable, proved for the true equation, whatever ``n`` is.
+
+        Returns
+        -------
+        Verdict
+            ``Verdict.STABLE`` (all solutions bounded for ``t >= 0``), ``Verdict.UNSTABLE`` or ``Verdict.UNDECIDED``,
+            with the sentence that proves it as ``.reason``.  Undecided means within ``1e-100`` of a boundary, or
+            a box that a boundary may cross.
+
+        Raises
+        ------
+        MissingParameterError
+            if a parameter has no value.
+
+        Examples
+        --------
+        >>> from sympy import Matrix, cos
+        >>> from sympy.abc import a, b, c, t
+        >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 0)
+        >>> print(F.verdict({a: -0.1, b: 0.55}))
+        STABLE: the determinant is 1 and the trace [-0.0795591560226 +/- 4.58e-14] lies strictly between -2 and 2
+        >>> G = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), -c]]), t, 0)
+        >>> G.verdict({a: 0.25, b: 0.2, c: 0.01})
+        Verdict.UNSTABLE
+        """
+        exact = self._numbers(values)
+        paired, form = self._structure(exact)
+        for digits in (10, 30, 100):
+            matrix = over_period(lambda: self._at(exact), self._turns, digits, strict=False)
+            with ctx.workprec(dps_to_prec(digits) + 64):
+                verdict = judge(matrix, paired, form)
+            if verdict != Verdict.UNDECIDED or is_box(exact):
+                break
+        return verdict
 
     def lambdify(self, params: Sequence[Symbol], bound: bool = False) -> Callable[..., Any]:
         """A NumPy function of the parameters in this order; arrays broadcast to shape (..., m, m).

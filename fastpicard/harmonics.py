@@ -1,0 +1,166 @@
+r"""A periodic matrix at numbers: ``P(t) = sum over q of (C_q cos qt + S_q sin qt)`` in balls.
+
+Everything rigorous starts here.  Parameters become balls (python-flint ``arb``: a
+midpoint and a radius that provably contains the truth), so a number, a ball and a
+whole interval of values are one case.  The entries of
+
+    Pbar = sup over t of |P(t)|  <=  sum over q of sqrt(C_q**2 + S_q**2)
+
+bound every majorant of the package.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from flint import arb, arb_mat, ctx
+
+from fastpicard.errors import BadInputError
+from fastpicard.evaluate import Point, Values, ball, exact_number, exact_values, free_symbols
+from fastpicard.matrix import SeriesMatrix
+from fastpicard.modes import COS
+
+Place = tuple[int, int]
+Wave = tuple[Any, Any, Any]  # q, the cosine's amplitude, the sine's: balls
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """``P`` at numbers.
+
+    Attributes
+    ----------
+    size : int                              rows of ``P``
+    waves : {(i, j): list of (q, C, S)}     entry ``(i, j)`` is the sum of ``C cos qt + S sin qt``; no zero entries
+    """
+
+    size: int
+    waves: Mapping[Place, list[Wave]]
+
+    @cached_property
+    def bound(self) -> Any:
+        """``Pbar``: an ``arb_mat`` whose entries bound ``|P(t)|`` at every real ``t``."""
+        entries = [[arb(0)] * self.size for _ in range(self.size)]
+        for (i, j), waves in self.waves.items():
+            entries[i][j] = sum((_amplitude(c, s) for _, c, s in waves), arb(0)).upper()
+        return arb_mat(entries)
+
+    @cached_property
+    def highest(self) -> float:
+        """An upper bound of the frequencies, as a float."""
+        return max((float(abs(q).upper()) for waves in self.waves.values() for q, _, _ in waves), default=0.0)
+
+    @cached_property
+    def is_constant(self) -> bool:
+        """Whether ``P`` does not depend on time."""
+        return all(q == 0 for waves in self.waves.values() for q, _, _ in waves)
+
+    @cached_property
+    def is_wide(self) -> bool:
+        """Whether ``P`` stands for many matrices: a coefficient has a radius that is not rounding."""
+        return any(x.rel_accuracy_bits() < 32 for waves in self.waves.values() for wave in waves for x in wave)
+
+    @cached_property
+    def reversal(self) -> tuple[int, ...] | None:
+        """Signs ``s`` with ``s P(-t) s = -P(t)``, ``s = diag(s_i)``, or None.
+
+        Then ``Phi(-t) = s Phi(t) s``: the second half of a period is the first one mirrored.
+        """
+        links = [(i, j, *_parities(waves)) for (i, j), waves in self.waves.items()]
+        if any(even and odd or i == j and even for i, j, even, odd in links):
+            return None
+        signs: dict[int, int] = {}
+        while len(signs) < self.size:
+            signs[min(set(range(self.size)) - set(signs))] = 1
+            while new := {k: (-1 if even else 1) * signs[m] for i, j, even, _ in links for k, m in ((i, j), (j, i))
+                          if m in signs and k not in signs}:
+                signs.update(new)
+        if any(signs[i] * signs[j] != (-1 if even else 1) for i, j, even, _ in links):
+            return None
+        return tuple(signs[i] for i in range(self.size))
+
+    def shifted(self, start: Any) -> Harmonics:
+        """``P(start + t)``."""
+        def turned(wave: Wave) -> Wave:
+            q, c, s = wave
+            cos, sin = (q * start).cos(), (q * start).sin()
+            return q, c * cos + s * sin, s * cos - c * sin
+
+        return Harmonics(self.size, {place: [turned(wave) if wave[0] != 0 else wave for wave in waves]
+                                     for place, waves in self.waves.items()})
+
+
+def _amplitude(c: Any, s: Any) -> Any:
+    if s == 0:
+        return abs(c)
+    return abs(s) if c == 0 else (c * c + s * s).sqrt()
+
+
+def _parities(waves: list[Wave]) -> tuple[bool, bool]:
+    """Whether an entry has an even part, and an odd one."""
+    return any(not c.is_zero() for _, c, _ in waves), any(not s.is_zero() for _, _, s in waves)
+
+
+def harmonics(P: SeriesMatrix, values: Mapping[Any, Any]) -> Harmonics:
+    """``P`` at exact parameter values (see :func:`numbers_in`), in balls of the working precision."""
+    point = Point(arb(0), values)
+    waves: dict[Place, list[Wave]] = {}
+    for i, row in enumerate(P.rows):
+        for j, modes in enumerate(row):
+            found: dict[Any, Wave] = {}
+            for (kind, angle, monomial), f in modes.items():
+                amplitude = point.monomial(monomial) * f[0]
+                cos, sin = _turned(point, angle, amplitude)
+                if kind != COS:
+                    cos, sin = sin, -cos
+                q, c, s = found.get(angle[0], (point.linear(angle[0]), arb(0), arb(0)))
+                found[angle[0]] = q, c + cos, s - sin
+            if found:
+                waves[i, j] = list(found.values())
+    return Harmonics(P.shape[0], waves)
+
+
+def _turned(point: Point, angle: Any, amplitude: Any) -> tuple[Any, Any]:
+    """``amplitude`` times cosine and sine of the phase."""
+    if not angle[1]:
+        return amplitude, arb(0)
+    phase = point.linear(angle[1])
+    return amplitude * phase.cos(), amplitude * phase.sin()
+
+
+# -- values of the parameters ------------------------------------------------
+
+
+def numbers_in(P: SeriesMatrix, values: Values | None, others: Iterable[Any] = ()) -> dict[Any, Any]:
+    """The values of the parameters of ``P`` and of other symbols: exact numbers, or for ``(lo, hi)`` a ball.
+
+    Raises
+    ------
+    MissingParameterError
+        if a parameter has no value.
+    BadInputError
+        if ``lo > hi``.
+    """
+    needed = set(others).union(*(free_symbols(modes) for row in P.rows for modes in row))
+    if isinstance(values, Mapping):
+        values = {key: _interval(key, value) if isinstance(value, tuple) else value for key, value in values.items()}
+    return exact_values(values, needed, P.t)
+
+
+def _interval(name: Any, ends: tuple[Any, ...]) -> Any:
+    if len(ends) != 2:
+        raise BadInputError(f"an interval of {name} is a pair (lo, hi), but it is {ends!r}.  Give two numbers.")
+    with ctx.workprec(256):
+        lo, hi = (ball(exact_number(end, f"an end of the interval of {name}")) for end in ends)
+        if lo > hi:
+            raise BadInputError(f"an interval of {name} is a pair (lo, hi) with lo <= hi, but it is {ends!r}.  "
+                                "Exchange the two.")
+        return lo.union(hi)
+
+
+def is_box(values: Mapping[Any, Any]) -> bool:
+    """Whether a value is a ball with a radius, that is more than one point."""
+    return any(isinstance(value, arb) and not value.is_exact() for value in values.values())

@@ -1,0 +1,281 @@
+r"""Multipliers in balls, with the symmetry that the equation has, kept exactly.
+
+If a constant, regular, antisymmetric ``W`` makes ``W P(t)`` symmetric at all times
+(``P`` is Hamiltonian), ``Phi(T)' W Phi(T) = W``: with every multiplier ``lambda`` also
+``1/lambda`` is one.  The same follows from reversal, ``s P(-t) s = -P(t)``.  Then the
+characteristic polynomial is palindromic, and in ``rho = lambda + 1/lambda`` it is a
+polynomial ``p`` of half the degree,
+
+    chi(lambda)/lambda**m = p(rho) = c_m + sum_k c_{m-k} D_k(rho),
+    D_0 = 2,  D_1 = rho,  D_{k+1} = rho D_k - D_{k-1}        (D_k = lambda**k + lambda**-k).
+
+A multiplier is on the unit circle exactly if its ``rho`` is real with ``|rho| <= 2``; that
+is a statement about a real number, which balls can prove, and no rounding leaves the circle.
+
+Roots of ``p`` are enclosed by discs: with approximations ``z_i`` every root lies within
+``m |p(z_i)| / prod |z_i - z_j|`` of some ``z_i``, and discs that hang together hold as many
+roots as there are of them (Smith 1970).
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from math import factorial
+from typing import Any
+
+from flint import acb, acb_mat, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
+
+from fastpicard.matrix import SeriesMatrix
+from fastpicard.ring import expression_of
+
+# -- structure ---------------------------------------------------------------
+
+
+def symplectic_form(P: SeriesMatrix, values: Mapping[Any, Any]) -> Any:
+    """A regular antisymmetric ``fmpq_mat`` ``W`` with ``W P(t)`` symmetric at all ``t``, or None.
+
+    Exact: parameters with rational values are put in, all others stay symbols, so that
+    a form that is found holds at every value of those.
+    """
+    size = P.shape[0]
+    places = list(combinations(range(size), 2))
+    if size % 2:
+        return None
+    kernel = _kernel([_condition(A, size, places) for A in _coefficients(P, values)], len(places))
+    for attempt in range(1, 6):
+        weights = [fmpq(factorial(attempt + k) % 97 + k + 1) for k in range(len(kernel))]
+        form = fmpq_mat(size, size)
+        for weight, vector in zip(weights, kernel, strict=True):
+            for (i, j), x in zip(places, vector, strict=True):
+                form[i, j] = form[i, j] + weight * x
+                form[j, i] = form[j, i] - weight * x
+        if kernel and form.det() != 0:
+            return form
+    return None
+
+
+def _coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[dict[tuple[int, int], Any]]:
+    """The constant matrices that multiply independent functions in ``P``."""
+    found: dict[Any, dict[tuple[int, int], Any]] = {}
+    for i, row in enumerate(P.rows):
+        for j, modes in enumerate(row):
+            for (kind, angle, monomial), f in modes.items():
+                value, rest = f[0], []
+                for g, e in monomial:
+                    given = values.get(expression_of(g))
+                    if isinstance(given, fmpq) and e == int(e) and (given != 0 or e > 0):
+                        value *= given ** int(e)
+                    else:
+                        rest.append((g, e))
+                matrix = found.setdefault((kind, angle, tuple(rest)), {})
+                matrix[i, j] = matrix.get((i, j), fmpq(0)) + value
+    return list(found.values())
+
+
+def _condition(A: dict[tuple[int, int], Any], size: int, places: list[tuple[int, int]]) -> list[list[Any]]:
+    """The rows of ``W A - (W A)' = 0`` in the entries of ``W`` above the diagonal."""
+    number = {place: k for k, place in enumerate(places)}
+    rows = {place: [fmpq(0)] * len(places) for place in places}
+    for (k, j), value in A.items():
+        for i in range(size):
+            if i in (k, j):
+                continue
+            column, sign = (number[i, k], 1) if i < k else (number[k, i], -1)
+            if i < j:
+                rows[i, j][column] += sign * value
+            else:
+                rows[j, i][column] -= sign * value
+        # i == j: the diagonal of W A - (W A)' vanishes by itself.
+    return list(rows.values())
+
+
+def _kernel(blocks: list[list[list[Any]]], unknowns: int) -> list[list[Any]]:
+    rows = [row for block in blocks for row in block if any(row)]
+    if not rows:
+        return [[fmpq(int(i == j)) for i in range(unknowns)] for j in range(unknowns)]
+    reduced, rank = fmpq_mat(rows).rref()
+    pivots = [next(k for k in range(unknowns) if reduced[r, k] != 0) for r in range(rank)]
+    basis = []
+    for free in sorted(set(range(unknowns)) - set(pivots)):
+        vector = [fmpq(0)] * unknowns
+        vector[free] = fmpq(1)
+        for r, pivot in enumerate(pivots):
+            vector[pivot] = -reduced[r, free]
+        basis.append(vector)
+    return basis
+
+
+# -- the characteristic polynomial in rho ------------------------------------
+
+
+def in_rho(matrix: Any) -> Any:
+    """``p`` of a matrix of balls whose true characteristic polynomial is palindromic: an ``arb_poly``, monic."""
+    coefficients = matrix.charpoly().coeffs()
+    half = len(coefficients) // 2
+    even = [min(coefficients[k], coefficients[2 * half - k], key=lambda x: float(x.rad())) for k in range(half)]
+    dickson = [arb_poly([2]), arb_poly([0, 1])]
+    while len(dickson) <= half:
+        dickson.append(arb_poly([0, 1]) * dickson[-1] - dickson[-2])
+    terms = (c * d for c, d in zip(even[:0:-1], dickson[1:half], strict=True))
+    return sum(terms, arb_poly([coefficients[half]])) + dickson[half]
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A disc that holds roots: as many as its cluster has discs.
+
+    Attributes
+    ----------
+    center : acb, exact;  radius : arb, exact
+    cluster : int     discs that hang together have the same number
+    alone : bool      whether it is a cluster by itself: then it holds one root
+    real : bool       whether that root is proved to be real
+    """
+
+    center: Any
+    radius: Any
+    cluster: int
+    alone: bool
+    real: bool
+
+    @property
+    def ball(self) -> Any:
+        """The square around the disc; on the real line where the root is real."""
+        around = arb(0, self.radius)
+        return acb(self.center.real + around, 0 if self.real else self.center.imag + around)
+
+
+def root_discs(p: Any) -> list[Disc]:
+    """Discs around the roots of a monic polynomial with real balls as coefficients."""
+    degree = p.degree()
+    centers = _approximate_roots(p)
+    radii = []
+    for i, z in enumerate(centers):
+        distance = arb(1)
+        for j, w in enumerate(centers):
+            if j != i:
+                distance *= abs(z - w)
+        quotient = degree * abs(acb_poly(p)(z)) / distance
+        radii.append(quotient.upper() if quotient.is_finite() else arb.pos_inf())
+    clusters = list(range(degree))
+    for i, j in combinations(range(degree), 2):
+        if not abs(centers[i] - centers[j]) > radii[i] + radii[j]:
+            old, new = clusters[j], clusters[i]
+            clusters = [new if c == old else c for c in clusters]
+    return [Disc(z, r, c, clusters.count(c) == 1, clusters.count(c) == 1 and bool(z.imag == 0))
+            for z, r, c in zip(centers, radii, clusters, strict=True)]
+
+
+def _approximate_roots(p: Any) -> list[Any]:
+    """Exact numbers near the roots (Weierstrass, also called Durand and Kerner), real where they nearly are."""
+    degree = p.degree()
+    middle = acb_poly([acb(c.mid()) for c in p.coeffs()])
+    size = 1 + max(abs(c).upper() for c in p.coeffs()[:-1])
+    roots = [acb(0.4, 0.9) ** k * (size if k else 1) for k in range(degree)]
+    for _ in range(60 + 8 * degree + ctx.prec // 4):
+        largest = arb(0)
+        for i, z in enumerate(roots):
+            distance = acb(1)
+            for j, w in enumerate(roots):
+                if j != i:
+                    distance *= z - w
+            change = middle(z) / distance if distance != 0 else acb(arb(2) ** -ctx.prec)
+            roots[i] = _middle(z - change)
+            largest = max(largest, abs(change).upper())
+        if largest < size * arb(2) ** (8 - ctx.prec):
+            break
+    return [acb(z.real) if abs(z.imag) < arb(2) ** (-ctx.prec // 3) * (1 + abs(z)) else z for z in roots]
+
+
+def _middle(z: Any) -> Any:
+    return acb(z.real.mid(), z.imag.mid())
+
+
+# -- multipliers -------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Multiplier:
+    """An eigenvalue of the Floquet matrix.
+
+    Attributes
+    ----------
+    ball : acb                          contains the multiplier
+    on_unit_circle : bool or None       proved to have modulus 1, proved not to, or neither
+    """
+
+    ball: Any
+    on_unit_circle: bool | None
+
+    @property
+    def digits(self) -> float:
+        """Decimals that are known, relative to the modulus."""
+        radius = self.ball.real.rad() + self.ball.imag.rad()
+        return -float((radius / abs(self.ball).lower()).log()) / math.log(10) if radius > 0 else math.inf
+
+    def __complex__(self) -> complex:
+        return complex(_middle(self.ball))
+
+
+def reciprocal_multipliers(matrix: Any) -> list[Multiplier]:
+    """The multipliers of a matrix whose characteristic polynomial is palindromic.
+
+    Sorted by modulus, largest first; number ``k`` from the front and number ``k`` from the
+    back are reciprocal, and equal to ``1/lambda`` of each other as balls.
+    """
+    pairs = [_pair(disc) for disc in root_discs(in_rho(matrix))]
+    pairs.sort(key=lambda pair: (-float(abs(_middle(pair[0].ball))), cmath.phase(complex(pair[0]))))
+    return [pair[0] for pair in pairs] + [pair[1] for pair in reversed(pairs)]
+
+
+def _pair(disc: Disc) -> tuple[Multiplier, Multiplier]:
+    rho = disc.ball
+    if disc.real and abs(rho.real) < 2:
+        half = rho.real / 2
+        height = (1 - half * half).sqrt()
+        return Multiplier(acb(half, height), True), Multiplier(acb(half, -height), True)
+    if disc.real and abs(rho.real) > 2:
+        sign = 1 if rho.real > 0 else -1
+        large = acb((rho.real + sign * (rho.real ** 2 - 4).sqrt()) / 2)
+        return Multiplier(large, False), Multiplier(1 / large, False)
+    off = bool(rho.imag > 0 or rho.imag < 0 or rho.real > 2 or rho.real < -2)
+    if off:
+        root = (rho * rho - 4).sqrt()
+        large, small = (rho + root) / 2, (rho - root) / 2
+        if abs(_middle(large)) < abs(_middle(small)):
+            large, small = small, large
+        if large.is_finite():
+            return Multiplier(large, False), Multiplier(1 / large, False)
+    return _near_circle(rho)
+
+
+def _near_circle(rho: Any) -> tuple[Multiplier, Multiplier]:
+    """Both solutions of ``lambda + 1/lambda = rho`` where it is not known which is the larger one.
+
+    ``(lambda - w)**2`` is at most ``|rho - sigma| |lambda|`` for the point ``sigma = w + 1/w`` next to ``rho``.
+    """
+    middle = rho.real.mid()
+    middle = min(max(middle, arb(-2)), arb(2))
+    w = acb(middle / 2, (1 - middle * middle / 4).nonnegative_part().sqrt())
+    gap = abs(rho - middle).upper()
+    spread = (gap + (gap * gap + 4 * gap).sqrt()).upper()  # |lambda - w| |lambda - 1/w| = |rho - sigma| |lambda|
+    around = acb(arb(0, spread), arb(0, spread))
+    return Multiplier(w + around, None), Multiplier(w.conjugate() + around, None)
+
+
+def general_multipliers(matrix: Any) -> list[Multiplier]:
+    """The multipliers of any matrix of balls, sorted by modulus, largest first.
+
+    Raises
+    ------
+    ValueError
+        if two of them cannot be told apart at this precision.
+    """
+    found = acb_mat(matrix).eig(multiple=True)
+    found.sort(key=lambda z: (-float(abs(_middle(z))), cmath.phase(complex(_middle(z)))))
+    one = arb(1)
+    return [Multiplier(z, False if abs(z) > one or abs(z) < one else None) for z in found]
