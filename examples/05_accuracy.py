@@ -5,7 +5,7 @@ their sum by 1e20, so evaluating them one by one in float64 leaves nothing.  The
 same iterate is right to the last digit when asked for its value.  The picture is
 ``docs/images/accuracy.png``.
 
-    python examples/05_accuracy.py --table      # and docs/accuracy_table.rst, with n = 120: some minutes
+    python examples/05_accuracy.py --table      # and docs/accuracy_table.txt, with n = 120: some minutes
 """
 
 import math
@@ -23,7 +23,7 @@ from fastpicard.vectorise import Collapsed, Evaluator
 a, b, t = symbols("a b t")
 P = Matrix([[0, 1], [-a - b * cos(t), 0]])
 POINT = {a: Rational(5, 2), b: Rational(3, 2)}
-TABLE = Path(__file__).parent.parent / "docs" / "accuracy_table.rst"
+TABLE = Path(__file__).parent.parent / "docs" / "accuracy_table.txt"
 PICTURE = Path(__file__).parent.parent / "docs" / "images" / "accuracy.png"
 
 

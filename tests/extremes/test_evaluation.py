@@ -6,6 +6,8 @@ it.
 
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
+from runpy import run_path
 
 import mpmath
 import numpy as np
@@ -242,3 +244,18 @@ def test_sums_of_any_size_are_fractions_to_the_last_digit():
         truth = sum(Fraction((-1) ** k, k + 1) * (Fraction(x) * Fraction(time)) ** k for k in range(40))
         found = Fraction(f.evaluate(time, {a: x}))
         assert abs(found - truth) <= abs(truth) * Fraction(101, 100) * Fraction(UNIT)
+
+
+def test_the_table_of_digits_lost_is_what_the_code_gives():
+    """Rows of order 20 of the page on accuracy, computed again by the example that wrote them."""
+    root = Path(__file__).parents[2]
+    example = run_path(str(root / "examples" / "05_accuracy.py"), run_name="table")
+    printed = (root / "docs" / "accuracy_table.txt").read_text().split("   * - ")
+    trace = floquet(20).trace()
+    for n, x, y in example["AT_THE_PERIOD"]:
+        if n == 20:
+            row = [str(n), x, y, *example["cells"](trace, x, y)]
+            (found,) = (cells for cells in (text.split("\n     - ") for text in printed) if cells[:3] == row[:3]
+                        and len(cells) == 9)  # fmt: skip
+            assert found[3] == row[3] and found[6:8] == row[6:8] == ["0.0", "0.0"] and found[8].strip() == row[8]
+            assert [float(cell) for cell in found[4:6]] == pytest.approx([float(cell) for cell in row[4:6]], abs=1)
