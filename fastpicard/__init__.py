@@ -11,6 +11,7 @@ expressions, evaluate, horner, doubledouble, vectorise, series, integrate, matri
 floquet, mathieu.
 """
 
+from fastpicard.boundaries import Boundary, Root, boundaries
 from fastpicard.errors import (
     BadInputError,
     BadTypeError,
@@ -34,6 +35,7 @@ __version__ = "0.1.0"
 __all__ = [
     "BadInputError",
     "BadTypeError",
+    "Boundary",
     "FastPicardError",
     "FloquetMatrix",
     "FundamentalMatrix",
@@ -43,9 +45,11 @@ __all__ = [
     "NotPeriodicError",
     "PicardIterate",
     "PoissonSeries",
+    "Root",
     "SeriesMatrix",
     "ShapeError",
     "Verdict",
+    "boundaries",
     "fast_picard",
     "gather",
     "mathieu_a",

@@ -1,0 +1,409 @@
+r"""Boundaries of stability for any number of degrees of freedom: exact functions of the parameters and their curves.
+
+Equation (15) of [Neves], trace = +-2, is the case N = 1 of this.  Where multipliers come in pairs ``lambda, 1/lambda``
+the characteristic polynomial is a polynomial p of degree N in ``rho = lambda + 1/lambda``, and stability can change
+only where a rho leaves the interval [-2, 2]: at its ends, or by meeting another one:
+
+    p(2) = 0   label "+1",        p(-2) = 0   label "-1",        disc p = 0   label "collision".
+
+All three are polynomials in the parameters with exact coefficients: smooth, where the largest modulus of an
+eigenvalue has a kink, so that Newton's method finds them in a handful of evaluations and tangents are exact.
+Where P reverses in time (cosine driving), p(2) and p(-2) fall into two factors each, the boundaries of even and
+of odd solutions (module ``halfway``), whose zeros are simple where those of p are double.
+``disc p`` is the determinant of Hermite's matrix of power sums (module ``determinants``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import hypot
+from typing import Any
+
+from flint import arb, ctx, fmpq
+from mpmath.libmp import dps_to_prec
+from sympy import Expr, Symbol
+
+from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
+from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.evaluate import Values, check_digits, exact_number, exact_values, numpy, to_number, upper_float
+from fastpicard.floquet import FloquetMatrix
+from fastpicard.halfway import generic_values, half_period, reversal
+from fastpicard.harmonics import harmonics
+from fastpicard.modes import Modes
+from fastpicard.remainder import a_posteriori
+from fastpicard.ring import expression_of
+from fastpicard.series import PoissonSeries
+from fastpicard.vectorise import Collapsed
+
+MOST = 60  # evaluations of one root
+Matrix = list[list[Any]]
+
+
+def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
+    """The functions whose zeros bound stability: exact polynomials in the parameters, from the n-th iterate.
+
+    Parameters
+    ----------
+    F : FloquetMatrix, shape (2N, 2N), multipliers in pairs lambda, 1/lambda
+
+    Returns
+    -------
+    tuple of Boundary
+        where ``P`` reverses in time: ``"+1"`` even and odd, ``"-1"`` even and odd; otherwise ``"+1"`` and ``"-1"``;
+        for N > 1 ``"collision"`` as well.
+
+    Raises
+    ------
+    BadInputError
+        if the multipliers do not come in pairs (damping), with what to do.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, cos
+    >>> from sympy.abc import a, b, t
+    >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 40)
+    >>> for f in boundaries(F):
+    ...     print(f.label, f.parity)
+    +1 even
+    +1 odd
+    -1 even
+    -1 odd
+    >>> boundaries(F)[2].root(a, (-0.7, 0.2), {b: 1.5}).value
+    -0.6963449249569149
+    """
+    size, signs = F.shape[0], reversal(F._P)
+    if size % 2 or not F._structure(generic_values(F._P))[0]:
+        raise BadInputError("boundaries need multipliers in pairs lambda, 1/lambda, and those of this P do not come in "
+                            "pairs (damping, say).  Use certify or F.verdict, which ask whether all are inside the "
+                            "unit circle.")
+    found = []
+    if signs is not None and signs.count(1) == size // 2:
+        half = half_period(F)
+        plus, minus = ([i for i in range(size) if signs[i] == s] for s in (1, -1))
+        for label, parity, rows, columns in (("+1", "even", minus, plus), ("+1", "odd", plus, minus),
+                                             ("-1", "even", plus, plus), ("-1", "odd", minus, minus)):
+            block = [[half[i][j] for j in columns] for i in rows]
+            found.append(Boundary(F, label, parity, block, determinant, half=True))
+    else:
+        whole = [[F._entry(i, j) for j in range(size)] for i in range(size)]
+        found += [Boundary(F, "+1", "", whole, _at_plus), Boundary(F, "-1", "", whole, _at_minus)]
+    if size > 2:
+        if signs is not None and signs.count(1) == size // 2:
+            block = [[F._entry(i, j) for j in plus] for i in plus]
+            found.append(Boundary(F, "collision", "", block, _discriminant_of_block))
+        else:
+            found.append(Boundary(F, "collision", "", whole, _discriminant))
+    return tuple(found)
+
+
+def _shifted(rows: Matrix, by: int) -> Matrix:
+    return [[x + by if i == j else x for j, x in enumerate(row)] for i, row in enumerate(rows)]
+
+
+def _at_plus(rows: Matrix) -> Any:
+    return determinant(_shifted(rows, -1))
+
+
+def _at_minus(rows: Matrix) -> Any:
+    return determinant(_shifted(rows, 1))
+
+
+def _discriminant_of_block(rows: Matrix) -> Any:
+    """disc p, where the rho are the eigenvalues of twice the block."""
+    size = len(rows)
+    doubled = [[x * 2 for x in row] for row in rows]
+    return determinant(_summable(hermite(power_sums(doubled, 2 * size - 2), size, False), doubled[0][0]))
+
+
+def _discriminant(rows: Matrix) -> Any:
+    size = len(rows) // 2
+    sums = sums_of_rho(power_sums(rows, 2 * size - 2), 2 * size - 2, 2 * size)
+    return determinant(_summable(hermite(sums, size, False), rows[0][0]))
+
+
+def _summable(rows: Matrix, like: Any) -> Matrix:
+    """The same with the number N in the corner as an element of the ring."""
+    return [[like * 0 + x if isinstance(x, int) else x for x in row] for row in rows]
+
+
+# -- one function --------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Root:
+    """Where a boundary crosses a line.
+
+    Attributes
+    ----------
+    value : float or mpf      of the parameter that was sought
+    error : float             a root of the true boundary is proved to lie within this; ``inf`` where it is not
+    evaluations : int         how often the function was evaluated
+    slopes : {Symbol: float}  the derivative of ``value`` by each of the other parameters, along the boundary
+    """
+
+    value: Any
+    error: float
+    evaluations: int
+    slopes: Mapping[Symbol, float]
+
+
+class Boundary:
+    """A polynomial in the parameters whose zeros bound stability.
+
+    Attributes
+    ----------
+    label : str           ``"+1"``: a multiplier is 1; ``"-1"``: one is -1; ``"collision"``: two pairs coincide
+    parity : str          of the periodic solution on the boundary: ``"even"``, ``"odd"``, or ``""`` where not known
+    symbols : tuple of Symbols, the parameters
+    """
+
+    def __init__(self, F: FloquetMatrix, label: str, parity: str, entries: list[list[Modes]],
+                 combine: Callable[[Matrix], Any], half: bool = False) -> None:
+        self.label, self.parity = label, parity
+        self._F, self._entries, self._combine, self._half = F, entries, combine, half
+        self._columns = len(entries[0])
+        self._collapsed = {None: Collapsed([modes for row in entries for modes in row], F.t)}
+        self.symbols = tuple(sorted(self._collapsed[None].symbols, key=str))
+
+    def expression(self) -> Expr:
+        """The polynomial, exact and expanded: long for orders above ten."""
+        t = self._F.t
+        rows = [[PoissonSeries.from_modes(modes, t) for modes in row] for row in self._entries]
+        return self._combine(rows).as_expr()
+
+    def __call__(self, values: Values, digits: int | None = None) -> Any:
+        """The n-th iterate's value: float, or mpf with ``digits`` digits of the largest intermediate value."""
+        wanted = check_digits(digits)
+        with ctx.workprec(64 + dps_to_prec(wanted or 17)):
+            return to_number(self._dual(exact_values(values, self.symbols, self._F.t), ())[0], wanted)
+
+    def gradient(self, values: Values) -> dict[Symbol, float]:
+        """The derivatives by all parameters."""
+        with ctx.workprec(128):
+            dual = self._dual(exact_values(values, self.symbols, self._F.t), self.symbols)
+            return {s: to_number(x, None) for s, x in zip(self.symbols, dual[1:], strict=True)}
+
+    def _of(self, symbol: Symbol | None) -> Collapsed:
+        if symbol not in self._collapsed:
+            rows = [_derivative(modes, symbol) for row in self._entries for modes in row]
+            self._collapsed[symbol] = Collapsed(rows, self._F.t)
+        return self._collapsed[symbol]
+
+    def _dual(self, values: Mapping[Any, Any], symbols: Sequence[Symbol], slack: Any = None) -> list[Any]:
+        """The value and derivatives in balls; with ``slack``, balls that contain those of the true function."""
+        parts = [self._of(s).balls(dict(values)) for s in (None, *symbols)]
+        if slack is not None:
+            parts[0] = [x + arb(0, e) for x, e in zip(parts[0], slack, strict=True)]
+        numbers = [Dual(list(x)) for x in zip(*parts, strict=True)]
+        parts_of: list[Any] = self._combine(_rows(numbers, self._columns)).parts
+        return parts_of
+
+    # -- roots -------------------------------------------------------------------
+
+    def root(self, x: Symbol, bracket: tuple[Any, Any], fixed: Values | None = None, digits: int = 15) -> Root:
+        """A zero in ``x`` between two values where the function has different signs, by Newton's method in a bracket.
+
+        Parameters
+        ----------
+        x : Symbol
+        bracket : (lo, hi), numbers
+        fixed : {Symbol: number}      the other parameters
+        digits : int                  of the zero of the n-th iterate's function; above 15 an mpf is returned
+
+        Returns
+        -------
+        Root
+            with a proved distance to a zero of the *true* function.
+
+        Raises
+        ------
+        BadInputError
+            if the signs at both ends agree.
+        """
+        wanted = check_digits(digits) or 15
+        if x not in self.symbols:
+            raise BadInputError(f"the unknown must be one of the parameters {list(self.symbols)}, but it is {x}.  "
+                                "Choose one of these.")
+        others = {s: v for s, v in (fixed or {}).items() if s != x}
+        exact = exact_values({**others, x: 0}, self.symbols, self._F.t)
+        with ctx.workprec(dps_to_prec(wanted) + 64):
+            value, count = self._newton(x, exact, [_exact(end) for end in bracket], arb(10) ** -wanted)
+            dual = self._dual({**exact, x: value}, (x, *(s for s in self.symbols if s != x)))
+            slopes = {s: to_number(-d / dual[1], None)
+                      for s, d in zip((s for s in self.symbols if s != x), dual[2:], strict=True)}
+            rounded = to_number(value, None if wanted <= 15 else wanted)
+            lost = abs(value - _exact(rounded)) + arb(self._proved(x, exact, value, dual))
+            return Root(rounded, upper_float(lost.upper()) if lost.is_finite() else float("inf"), count + 1, slopes)
+
+    def _newton(self, x: Symbol, exact: dict[Any, Any], bracket: list[Any], tol: Any) -> tuple[Any, int]:
+        lo, hi = sorted(bracket, key=float)
+        (f, df), (g, dg) = (self._dual({**exact, x: end}, (x,)) for end in (lo, hi))
+        if not f * g <= 0:
+            raise BadInputError(f"the function must change its sign between the ends {float(lo)} and {float(hi)}, but "
+                                f"it is {f.str(5)} and {g.str(5)} there.  Choose ends on both sides of the boundary.")
+        rising, count = bool(g > 0), 2
+        here, value, slope = (lo, f, df) if abs(f / df) < abs(g / dg) else (hi, g, dg)
+        while count < MOST:
+            step = value / slope if not slope.contains(0) else (hi - lo) * 2
+            new = (here - step).mid()
+            if not (new > lo and new < hi):
+                new = ((lo + hi) / 2).mid()
+            moved = abs(new - here)
+            value, slope = self._dual({**exact, x: new}, (x,))
+            count, here = count + 1, new
+            if value == 0 or value.contains(0) or abs(value / slope) < tol * (abs(here) + tol) and moved < 1:
+                break
+            lo, hi = (lo, here) if bool(value > 0) == rising else (here, hi)
+        if not slope.contains(0):
+            here = (here - value / slope).mid()
+        return here, count
+
+    def _proved(self, x: Symbol, exact: dict[Any, Any], value: Any, dual: list[Any]) -> float:
+        """A distance at which the true function is proved to have different signs on both sides."""
+        values = {**exact, x: value}
+        period = self._F._at(values)[1]
+        bound = a_posteriori(harmonics(self._F._P, values), period / 2 if self._half else period, self._F.n)
+        largest = max((entry.upper() for entry in bound.entries()), default=arb(0))
+        slack = [2 * largest] * (len(self._entries) * self._columns)
+        at = self._dual(values, (), slack)[0]
+        if dual[1].contains(0) or not at.is_finite():
+            return float("inf")
+        distance = (2 * abs(at) / abs(dual[1]) + abs(value) * arb(2) ** (8 - ctx.prec)).upper()
+        for _ in range(3):
+            with ctx.workprec(ctx.prec + 32):
+                left, right = (self._dual({**values, x: (value + side * distance).mid()}, (), slack)[0]
+                               for side in (-1, 1))
+            if left * right < 0 and abs(distance) < abs(value) + 1:
+                return upper_float(distance)
+            distance *= 4
+        return float("inf")
+
+    # -- curves ------------------------------------------------------------------
+
+    def follow(self, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any], start: tuple[Any, Any],
+               fixed: Values | None = None, step: float = 0.02) -> tuple[Any, Any]:
+        """The curve through a point of it, both ways, until it leaves the rectangle or closes.
+
+        Parameters
+        ----------
+        x, y : (Symbol, lo, hi)
+        start : (x, y)      near the curve
+        fixed : {Symbol: number}
+        step : float        the longest step, as a part of the rectangle's sides; shortened where the curve bends
+
+        Returns
+        -------
+        points, tangents : arrays, shape (m, 2) each
+            every point to 1e-12 of the sides; tangents ``(dx, dy)``, in units of the sides, of length 1.
+        """
+        np = numpy()
+        box = [(s, float(lo), float(hi) - float(lo)) for s, lo, hi in (x, y)]
+        exact = exact_values({**(fixed or {}), x[0]: 0, y[0]: 0}, self.symbols, self._F.t)
+        first = self._onto(box, exact, [(float(c) - lo) / w for c, (_, lo, w) in zip(start, box, strict=True)])
+        if first is None:
+            raise BadInputError(f"a boundary is followed from a point near it, but none was found near {start}.  Start "
+                                "from a root().")
+        halves = [self._one_way(box, exact, first, sign, step) for sign in (-1.0, 1.0)]
+        track = [*reversed(halves[0]), first, *halves[1]]
+        scale, origin = np.array([w for *_, w in box]), np.array([lo for _, lo, _ in box])
+        points = np.array([point for point, _ in track]) * scale + origin
+        tangents = np.array([tangent for _, tangent in track])
+        turned = [1.0]
+        for old, new in pairwise(tangents):
+            turned.append(turned[-1] * (1.0 if old @ new >= 0 else -1.0))
+        return points, tangents * np.array(turned)[:, None]
+
+    def _one_way(self, box: list[Any], exact: dict[Any, Any], first: Any, sign: float, step: float) -> list[Any]:
+        point, tangent = first
+        tangent = (sign * tangent[0], sign * tangent[1])
+        track: list[Any] = []
+        length = step
+        while len(track) < 100 / step:
+            new = self._onto(box, exact, [p + length * d for p, d in zip(point, tangent, strict=True)])
+            turn = new and new[1][0] * tangent[0] + new[1][1] * tangent[1]
+            if not new or abs(turn) < 0.98 or hypot(*(p - q for p, q in zip(new[0], point, strict=True))) > 2 * length:
+                length /= 2
+                if length < 1e-6:
+                    break
+                continue
+            if not all(-1e-12 <= c <= 1 + 1e-12 for c in new[0]):
+                break
+            direction = 1.0 if turn > 0 else -1.0
+            point, tangent = new[0], (direction * new[1][0], direction * new[1][1])
+            track.append((point, tangent))
+            length = min(step, 1.5 * length)
+            if len(track) > 3 and hypot(*(p - q for p, q in zip(point, first[0], strict=True))) < length / 2:
+                break
+        return track
+
+    def _onto(self, box: list[Any], exact: dict[Any, Any], at: list[float]) -> Any:
+        """The point of the curve that Newton's method along the gradient finds, and the tangent there."""
+        names = [s for s, *_ in box]
+        for _ in range(12):
+            values = {**exact, **{s: _exact(lo + c * w) for c, (s, lo, w) in zip(at, box, strict=True)}}
+            with ctx.workprec(128):
+                f, *slope = (to_number(part, None) for part in self._dual(values, names))
+            slope = [d * w for d, (*_, w) in zip(slope, box, strict=True)]
+            size = hypot(*slope)
+            if size == 0:
+                return None
+            move = [-f * d / size**2 for d in slope]
+            at = [c + m for c, m in zip(at, move, strict=True)]
+            if hypot(*move) < 1e-12:
+                return tuple(at), (-slope[1] / size, slope[0] / size)
+        return None
+
+    def __repr__(self) -> str:
+        kind = f"{self.label} {self.parity}".strip()
+        return f"<Boundary {kind} in {', '.join(map(str, self.symbols))}, from {self._F!r}>"
+
+
+def _exact(value: Any) -> Any:
+    number = exact_number(value, "a coordinate")
+    return arb(number) if isinstance(number, fmpq) else number
+
+
+def _rows(numbers: list[Any], columns: int) -> Matrix:
+    return [numbers[k:k + columns] for k in range(0, len(numbers), columns)]
+
+
+def _derivative(modes: Modes, symbol: Symbol) -> Modes:
+    """The derivative of a polynomial by a parameter."""
+    result: Modes = {}
+    for (kind, angle, monomial), f in modes.items():
+        for k, (g, e) in enumerate(monomial):
+            if expression_of(g) == symbol:
+                lower = (*monomial[:k], *(((g, e - 1),) if e != 1 else ()), *monomial[k + 1:])
+                result[kind, angle, lower] = f * fmpq(e.numerator, e.denominator)
+            elif symbol in expression_of(g).free_symbols:
+                raise BadTypeError(f"a boundary is differentiated by parameters that occur as powers, but {symbol} "
+                                   f"occurs in {expression_of(g)}.  Name that by a symbol of its own.")
+    return result
+
+
+class Dual:
+    """A number with its first derivatives: the product rule, in balls."""
+
+    __slots__ = ("parts",)
+
+    def __init__(self, parts: list[Any]) -> None:
+        self.parts = parts
+
+    def __add__(self, other: Any) -> Dual:
+        if not isinstance(other, Dual):
+            return Dual([self.parts[0] + other, *self.parts[1:]])
+        return Dual([x + y for x, y in zip(self.parts, other.parts, strict=True)])
+
+    def __sub__(self, other: Dual) -> Dual:
+        return self + other * -1
+
+    def __mul__(self, other: Any) -> Dual:
+        if not isinstance(other, Dual):
+            return Dual([x * other for x in self.parts])
+        f, g = self.parts[0], other.parts[0]
+        return Dual([f * g, *(f * dg + df * g for df, dg in zip(self.parts[1:], other.parts[1:], strict=True))])
+
+
+__all__ = ["Boundary", "Root", "boundaries"]

@@ -1,0 +1,113 @@
+r"""The Floquet matrix over half a period, where time can be reversed.
+
+If signs ``s = diag(+-1)`` reverse time, ``s P(-t) s = -P(t)`` (cosine driving does), the second half of a period is
+the first one mirrored: with ``X = Phi(T/2)``,
+
+    Phi(T) = s X**-1 s X,        X = [[A, B], [C, D]] in blocks of s = +1 and s = -1.
+
+The boundaries of stability then fall apart into factors.  ``Phi(T) -+ 1 = s X**-1 (s X -+ X s)``, and
+``s X - X s = [[0, 2 B], [-2 C, 0]]``, ``s X + X s = [[2 A, 0], [0, -2 D]]``, so up to signs and ``det X``
+
+    det(Phi(T) - 1) = 4**N det B det C,        det(Phi(T) + 1) = 4**N det A det D.
+
+For one degree of freedom ``det X = 1`` and
+
+    trace - 2 = 4 B C,        trace + 2 = 4 A D:
+
+the zeros of the trace minus 2, double where two boundaries touch, become simple zeros of B and of C.  Each entry is
+the boundary function of a Sturm-Liouville problem on half the period: ``C = 0`` (even) and ``B = 0`` (odd) belong to
+solutions of period T, ``A = 0`` (even) and ``D = 0`` (odd) to those of antiperiod T.  Half a period also takes far
+fewer iterates: 56 instead of 79 for thirty digits of Mathieu's equation at ``|a| + |b| = 4``.
+
+**After half a period** an angle that makes ``m`` whole turns in T has made ``m`` half turns, so every cosine is
+``(-1)**m`` and every sine 0: as exact as at the period.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flint import fmpq
+from sympy import Symbol, pi
+
+from fastpicard import modes as algebra
+from fastpicard.coordinates import Problem
+from fastpicard.evaluate import free_symbols
+from fastpicard.floquet import FloquetMatrix
+from fastpicard.harmonics import harmonics
+from fastpicard.increments import Entry, Rows, reflected, to_modes
+from fastpicard.matrix import SeriesMatrix
+from fastpicard.modes import Modes, mask, orient
+from fastpicard.picard import PackedIncrements
+from fastpicard.ring import ONE, Polynomial, generator, multiply
+
+Signs = tuple[int, ...]
+
+
+def reversal(P: SeriesMatrix) -> Signs | None:
+    """Signs ``s`` with ``s P(-t) s = -P(t)`` at all values of the parameters, the first of them 1, or None."""
+    return harmonics(P, generic_values(P)).reversal
+
+
+def generic_values(P: SeriesMatrix) -> dict[Symbol, Any]:
+    """Numbers for all parameters at which nothing vanishes that does not vanish identically, in practice."""
+    symbols = sorted(set().union(*(free_symbols(modes) for row in P.rows for modes in row)), key=str)
+    return {symbol: fmpq(1009 + 2 * k * k, 997 + k) for k, symbol in enumerate(symbols)}
+
+
+def half_period(F: FloquetMatrix) -> list[list[Modes]]:
+    """The n-th iterate at half the period, exactly: polynomials in the parameters, as constants."""
+    half = {m: c / 2 for m, c in F._length.items()}
+    powers: list[Polynomial] = [{ONE: fmpq(1)}]  # (T/2)**r / r!
+    for r in range(1, F.n + 1):
+        powers.append(multiply(powers[-1], {m: c / r for m, c in half.items()}))
+    return [[_entry(F, i, j, powers) for j in range(F.shape[1])] for i in range(F.shape[0])]
+
+
+def _entry(F: FloquetMatrix, i: int, j: int, powers: list[Polynomial]) -> Modes:
+    result: Modes = {}
+    for k in range(F.n + 1):
+        algebra.add_modes(result, algebra.frozen(_half_turns(F, k, i, j), powers))
+    return result
+
+
+def _half_turns(F: FloquetMatrix, k: int, i: int, j: int) -> Modes:
+    """An entry of an increment after a time in which every angle makes half turns: powers of that time."""
+    found = F._increments
+    if isinstance(found, PackedIncrements):
+        problem = found.problem
+        return to_modes(problem, _signed(problem, found.levels[k].columns[j][i], _unit_turns(F, problem)))
+    modes: Modes = {}
+    for (kind, (frequency, phase), monomial), f in found.entry(k, i, j).items():
+        turns = multiply(multiply(algebra.as_polynomial(frequency), F._length), _PER_TURN)
+        turned, angle = orient(((), phase))
+        algebra.add_reflected(modes, kind, turned, angle, monomial, -f if turns and int(turns[ONE].p) % 2 else f)
+    return modes
+
+
+_PER_TURN: Polynomial = {((generator(pi), -1),): fmpq(1, 2)}
+
+
+def _unit_turns(F: FloquetMatrix, problem: Problem) -> int:
+    """How many whole turns the unit of frequency makes in the period; every frequency is a multiple of it."""
+    monomial, rate = problem.coordinates.unit
+    turns = multiply(multiply({monomial: rate}, F._length), _PER_TURN)
+    return int(turns[ONE].p) if list(turns) == [ONE] else 0
+
+
+def _signed(problem: Problem, entry: Entry, turns: int) -> Entry:
+    """The entry with ``cos(q w T/2) = (-1)**(q turns)`` put in."""
+    result: Entry = {}
+    for monomial, (scale, rows) in entry.items():
+        collapsed: Rows = {}
+        for (kind, angle), row in rows.items():
+            start = problem.coordinates.without_frequency(angle)
+            if problem.coordinates.frequency(angle) * turns % 2:
+                row = -row
+            if start < 0:
+                start, row = -start, reflected(kind, row)
+            old = collapsed.get((kind, start))
+            collapsed[kind, start] = row if old is None else old + row
+        result[monomial] = scale, {(kind, start): row if start else mask(kind, row)
+                                   for (kind, start), row in collapsed.items()}
+    return result

@@ -1,0 +1,142 @@
+"""Boundaries: exact functions, their roots beside published and independent numbers, curves with tangents."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from sympy import Matrix, Rational, cos, diff, sin
+from sympy.abc import a, b, c, h, t, v
+
+from fastpicard import BadInputError, FloquetMatrix, mathieu_a, mathieu_b
+from fastpicard.boundaries import boundaries
+from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
+
+MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 40)
+TWO_RODS = Matrix([[Rational(18, 7), Rational(-9, 7)], [Rational(-27, 7), Rational(24, 7)]])
+
+
+def rods(order):
+    """The article's two equal rods, after Out[43]."""
+    block = -TWO_RODS * (-1 / v**2 + h * cos(t))
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [*block.row(0), 0, 0], [*block.row(1), 0, 0]])
+    return FloquetMatrix(P, t, order)
+
+
+def test_the_articles_point_takes_less_than_ten_evaluations():
+    """Out[56]: v = 27.5568 at h = 0.06; to forty digits 27.55675633877244909154703026299860855435."""
+    root = boundaries(rods(30))[0].root(v, (20.1, 30.1), {h: Rational(3, 50)})
+
+    assert abs(root.value - 27.55675633877244909) <= root.error < 1e-12
+    assert root.evaluations < 10
+
+
+@pytest.mark.parametrize("place, number", [(0, mathieu_a(0, -3)), (2, mathieu_a(1, -3)), (3, mathieu_b(1, -3))])
+def test_roots_are_characteristic_numbers(place, number):
+    """y'' + (a + b cos t) y with b = 3/2: a = a_r(-3)/4, b_r(-3)/4 by tridiagonal matrices."""
+    near = float(number) / 4
+    root = boundaries(MATHIEU)[place].root(a, (near - 0.006, near + 0.1), {b: 1.5})
+
+    assert abs(root.value - near) <= root.error + 1e-15 < 1e-12
+
+
+def test_half_period_factors_multiply_to_the_trace():
+    """4 B C = trace - 2 and 4 A D = trace + 2 for the true matrix; here to what forty iterates leave."""
+    even, odd, even_minus, odd_minus = boundaries(MATHIEU)
+    for at in ({a: 0.3, b: 0.7}, {a: -0.5, b: 1.2}, {a: 0, b: 0.1}):
+        trace = MATHIEU.trace_at(at)
+
+        assert abs(4 * even(at) * odd(at) - (trace - 2)) < 1e-10
+        assert abs(4 * even_minus(at) * odd_minus(at) - (trace + 2)) < 1e-10
+
+
+def test_gradients_are_those_of_the_exact_expression():
+    """SymPy differentiates the polynomial; the dual numbers differentiate the program."""
+    at = {h: Rational(1, 20), v: 20}
+    for f in boundaries(rods(6)):
+        expression = f.expression()
+        for symbol, value in f.gradient(at).items():
+            assert value == pytest.approx(float(diff(expression, symbol).subs(at)), rel=1e-12)
+        assert f(at) == pytest.approx(float(expression.subs(at)), rel=1e-12)
+
+
+def test_slopes_are_those_of_the_curve():
+    """The derivative of the root by the other parameter, against two roots."""
+    f = boundaries(MATHIEU)[0]
+    middle, left, right = (f.root(a, (-0.75, -0.5), {b: x}, 25) for x in (1.4, Rational(7, 5) - Rational(1, 10**8),
+                                                                         Rational(7, 5) + Rational(1, 10**8)))
+
+    assert middle.slopes[b] == pytest.approx(float((right.value - left.value) * 10**8 / 2), rel=1e-7)
+
+
+def test_a_curve_is_followed_with_its_tangents():
+    """Every point of the curve through (0, 0) is a_0(-2b)/4, and tangents join neighbours."""
+    points, tangents = boundaries(MATHIEU)[0].follow((a, -1, 1), (b, 0, 1), (0, 0.01))
+    chords = np.diff(points / [2, 1], axis=0)
+    chords /= np.hypot(*chords.T)[:, None]
+
+    assert len(points) > 40
+    for x, y in points[::10]:
+        assert abs(x - float(mathieu_a(0, -2 * y)) / 4) < 2e-12
+    assert np.all(np.abs((chords * tangents[:-1]).sum(axis=1)) > 0.99)
+
+
+def test_collisions_of_coupled_modes():
+    """Two oscillators coupled with opposite energies: p has a double root exactly where disc p changes its sign."""
+    H = Matrix([[1, 0], [0, -1]])  # q'' = -H S q with S symmetric: Hamiltonian of mixed signature
+    S = Matrix([[a, b], [b, Rational(-1, 3)]])
+    block = -H * S
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [*block.row(0), 0, 0], [*block.row(1), 0, 0]])
+    F = FloquetMatrix(P, t, 40, period=2)
+    collision = boundaries(F)[-1]
+    root = collision.root(b, (0.01, 0.3), {a: Rational(2, 3)})
+
+    assert collision.label == "collision"
+    assert root.value == pytest.approx(1 / 6, abs=1e-10)  # (a - 1/3)**2 = 4 b**2
+
+
+def test_without_reversal_the_boundaries_are_whole():
+    """A sine beside the cosine: no factors, but the same zeros as the trace."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - sin(2 * t) / 5, 0]]), t, 30)
+    plus, minus = boundaries(F)
+
+    assert (plus.label, minus.label) == ("+1", "-1")
+    at = {a: 0.3, b: 0.4}
+    assert plus(at) == pytest.approx(2 - F.trace_at(at), abs=1e-6)
+    assert minus(at) == pytest.approx(2 + F.trace_at(at), abs=1e-6)
+
+
+def test_damping_has_no_such_boundaries():
+    """The message says what to do instead."""
+    with pytest.raises(BadInputError, match="certify"):
+        boundaries(FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 2))
+
+
+def test_a_bracket_without_a_change_of_sign_is_refused():
+    """With the two values."""
+    with pytest.raises(BadInputError, match="sign"):
+        boundaries(MATHIEU)[0].root(a, (0.1, 0.2), {b: 0.1})
+
+
+numbers = st.integers(-5, 5)
+
+
+@settings(max_examples=100)
+@given(st.integers(1, 4).flatmap(lambda n: st.lists(st.lists(numbers, min_size=n, max_size=n), min_size=n, max_size=n)))
+def test_determinant_is_that_of_sympy(rows):
+    """Two routes, exactly; the discriminant is Hermite's determinant."""
+    n = len(rows)
+    sums = power_sums(rows, 2 * n)
+
+    assert determinant(rows) == Matrix(rows).det()
+    assert sums == [(Matrix(rows) ** k).trace() for k in range(1, 2 * n + 1)]
+    x = a
+    assert determinant(hermite(sums, n, False)) == Matrix(rows).charpoly(x).discriminant()
+
+
+@settings(max_examples=50)
+@given(st.lists(st.fractions(-3, 3, max_denominator=7).filter(bool), min_size=1, max_size=3))
+def test_sums_of_rho_from_traces(multipliers):
+    """The sums of (lambda + 1/lambda)**k from the traces of powers."""
+    n = len(multipliers)
+    traces = [sum(x**k + x**-k for x in multipliers) for k in range(1, 7)]
+
+    assert sums_of_rho(traces, 6, 2 * n) == [sum((x + 1 / x) ** k for x in multipliers) for k in range(1, 7)]
