@@ -12,6 +12,8 @@
 """
 
 from .chain import CompiledChain
+from .compiled import CompiledEquations, compile_equations
+from .crossings import Crossing, flips
 from .energy import Scene
 from .equations import EquationsOfMotion, euler_lagrange
 from .errors import (
@@ -31,9 +33,13 @@ from .errors import (
 from .linearize import FirstOrderSystem, LinearEquations, linearize
 from .normal_modes import NormalModes, normal_modes
 from .scene import Rod, Support
+from .simulate import simulate
+from .trajectory import Trajectory
 
 __all__ = [
     "CompiledChain",
+    "CompiledEquations",
+    "Crossing",
     "DriveError",
     "EquationsOfMotion",
     "FirstOrderSystem",
@@ -53,7 +59,11 @@ __all__ = [
     "SceneError",
     "Support",
     "TextError",
+    "Trajectory",
+    "compile_equations",
     "euler_lagrange",
+    "flips",
     "linearize",
     "normal_modes",
+    "simulate",
 ]

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import reduce
-from operator import add, mul
+from operator import add, mul, neg, sub, truediv
 from typing import Any
 
 import numpy as np
@@ -30,8 +30,6 @@ Function = Callable[[Any], Any]
 class Jet:
     """A truncated Taylor series; ``sines`` takes sine and cosine of one coefficient."""
 
-    __array_ufunc__ = None
-
     def __init__(self, coefficients: list[Any], elementary: dict[str, Function]) -> None:
         self.coefficients, self.elementary = coefficients, elementary
 
@@ -41,6 +39,15 @@ class Jet:
     def _other(self, other: Any) -> list[Any]:
         zero = 0 * self.coefficients[0]
         return other.coefficients if isinstance(other, Jet) else [other + zero] + [zero] * (len(self.coefficients) - 1)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        """numpy's functions of a series, and numpy's numbers on the left of one."""
+        name = ufunc.__name__
+        if method == "__call__" and not options and name in FUNCTIONS:
+            return getattr(self, name)()
+        if method == "__call__" and not options and name in _OPERATIONS:
+            return _OPERATIONS[name](*(x.item() if isinstance(x, np.generic) else x for x in inputs))
+        return NotImplemented
 
     def __add__(self, other: Any) -> Jet:
         return self._like([x + y for x, y in zip(self.coefficients, self._other(other), strict=True)])
@@ -122,6 +129,9 @@ def _elementary(name: str) -> Function:
 
 
 FUNCTIONS: dict[str, Function] = {name: _elementary(name) for name in ("sin", "cos", "exp", "log", "sqrt")}
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    "add": add, "subtract": sub, "multiply": mul, "divide": truediv, "negative": neg, "power": pow,
+    "square": lambda x: x * x}
 _SIMPLE = {sin: "sin", cos: "cos", exp: "exp", log: "log"}
 _REWRITTEN = {tan: lambda x: sin(x) / cos(x), sinh: lambda x: (exp(x) - exp(-x)) / 2,
               cosh: lambda x: (exp(x) + exp(-x)) / 2, tanh: lambda x: 1 - 2 / (exp(2 * x) + 1)}

@@ -6,7 +6,7 @@ same source for float64.  Translation happens at the first call and is kept on d
 
 A function and all that it calls are known to the cache under a digest of their instructions and constants,
 so that code from an older version is never run.  Products and sums may be contracted (``a*b + c`` rounded
-once); they are never reordered.
+once); sums are reordered only in functions marked so.
 """
 
 from __future__ import annotations
@@ -19,11 +19,12 @@ from importlib.util import find_spec
 from types import CodeType, FunctionType
 from typing import Any, TypeVar
 
-__all__ = ["has_numba", "inlined", "machine"]
+__all__ = ["has_numba", "inlined", "machine", "rebound", "reordered"]
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 PACKAGE = __name__.rpartition(".")[0]
 _INLINED: set[Callable[..., Any]] = set()
+_REORDERED: set[Callable[..., Any]] = set()
 
 
 def inlined(function: AnyFunction) -> AnyFunction:
@@ -32,9 +33,20 @@ def inlined(function: AnyFunction) -> AnyFunction:
     return function
 
 
+def reordered(function: AnyFunction) -> AnyFunction:
+    """Mark a short function as :func:`inlined` does, whose sums may be taken in any order."""
+    _REORDERED.add(function)
+    return inlined(function)
+
+
 def has_numba() -> bool:
     """Whether numba is installed; without it everything runs, some hundred times slower."""
     return find_spec("numba") is not None
+
+
+def rebound(function: Any, **names: Any) -> FunctionType:
+    """A copy of ``function`` that finds ``names`` in place of its globals of the same name."""
+    return FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__, function.__defaults__)
 
 
 @cache
@@ -49,12 +61,13 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
 def _translated(function: FunctionType) -> Callable[..., Any]:
     numba = import_module("numba")
     names = {name: _translated(callee) for name, callee in _callees(function)}
-    copy = FunctionType(function.__code__, {**function.__globals__, **names}, function.__name__,
-                        function.__defaults__)
+    copy = rebound(function, **names)
     copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{_digest(function)}"
     options = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy", "nogil": True}
     if function in _INLINED:
         options["forceinline"] = True
+    if function in _REORDERED:
+        options["fastmath"] = {"contract", "reassoc", "nsz"}
     return numba.njit(**options)(copy)  # type: ignore[no-any-return]
 
 

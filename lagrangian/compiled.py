@@ -1,0 +1,116 @@
+r"""The symbolic equations as fast functions of numbers: NumPy, mpmath or machine code.
+
+``M(theta) theta'' = f(t, theta, theta')`` is written out once, with common subexpressions shared, and the linear
+system is solved for every state; M is never inverted.  Every Symbol and function of the equations is replaced by a
+new one with a name of this file's choosing before any code is generated, so that no name in the equations, whatever
+it says, becomes code.
+
+This route costs O(n**3) a state and n**2 expressions to write out; it is for any equations one may want to
+compare, and for chains up to about ten rods.  :meth:`lagrangian.Scene.compile` is O(n).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import mpmath
+import numpy as np
+from sympy import Dummy, Matrix, Symbol, lambdify
+
+from .chain import CompiledChain
+from .constants import substitution
+from .equations import EquationsOfMotion
+from .errors import NotASceneError, QuantityError, SceneError
+from .machine import has_numba
+
+__all__ = ["CompiledEquations", "compile_equations"]
+
+TARGETS = ("numpy", "mpmath", "numba")
+
+
+class CompiledEquations:
+    """``acceleration(t, theta, omega)`` from the symbolic M and f; made by :func:`compile_equations`.
+
+    Attributes
+    ----------
+    equations : the :class:`EquationsOfMotion`, with numbers for their Symbols
+    target : ``"numpy"``, ``"mpmath"`` or ``"numba"``
+    chain : the same chain as a :class:`CompiledChain`
+    """
+
+    def __init__(self, equations: EquationsOfMotion, values: Mapping[Any, Any] | None, target: str) -> None:
+        self.equations, self.target = equations, target
+        self.chain: CompiledChain = equations.scene.compile(values)
+        n, replace = len(equations.scene), substitution(values)
+        self._time = Dummy("t")
+        rates, angles = ([Symbol(f"{letter}{k}") for k in range(n)] for letter in ("w", "q"))
+        plain = dict(zip(equations.scene.velocities, rates, strict=True)), dict(zip(equations.scene.coordinates, angles,
+                                                                                   strict=True))
+        names = [Dummy(f"x{i}") for i in range(2 * n)]
+        final = dict(zip([*angles, *rates], names, strict=True)) | {equations.t: self._time}
+        sides = []
+        for matrix in (equations.mass_matrix, equations.forcing):
+            numbers = Matrix(replace(matrix))
+            sides.append(numbers.xreplace(plain[0]).xreplace(plain[1]).xreplace(final))
+        left = set().union(*(side.free_symbols for side in sides)) - {self._time, *names}
+        if left:
+            raise QuantityError(f"the equations hold the Symbol {sorted(map(str, left))[0]}: give a number for it, as "
+                                f"in "
+                                f"compile_equations(equations, {{symbol: number}}).")
+        self._function = self._translated([self._time, *names], sides)
+
+    def _translated(self, arguments: list[Any], sides: list[Any]) -> Any:
+        modules = "mpmath" if self.target == "mpmath" else "numpy"
+        if self.target == "numba":
+            M, f = sides
+            sides = [[*M], [*f]]
+        function = lambdify(arguments, sides, modules=modules, cse=True, dummify=True)
+        return import_module("numba").njit(function) if self.target == "numba" and has_numba() else function
+
+    def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
+        """``theta''``, shape (n,): float64, or mpmath numbers at the precision of mpmath's own context; rad/s**2.
+
+        Raises SceneError unless theta and omega hold n numbers each.
+        """
+        n = len(self.chain)
+        if len(theta) != n or len(omega) != n:
+            raise SceneError(f"the chain has {n} rods, and theta has {len(theta)} and omega {len(omega)} entries.")
+        if self.target == "mpmath":
+            M, f = self._function(mpmath.mpf(t), *map(mpmath.mpf, theta), *map(mpmath.mpf, omega))
+            return np.array(list(mpmath.lu_solve(M, f)), dtype=object)
+        M, f = self._function(float(t), *map(float, theta), *map(float, omega))
+        return np.linalg.solve(np.asarray(M, dtype=float).reshape(n, n), np.asarray(f, dtype=float).reshape(n))
+
+    def __len__(self) -> int:
+        return len(self.chain)
+
+    def __repr__(self) -> str:
+        return f"CompiledEquations({self.equations.scene}, {self.target})"
+
+
+def compile_equations(equations: EquationsOfMotion, values: Mapping[Any, Any] | None = None,
+                      target: str = "numpy") -> CompiledEquations:
+    """Symbolic equations of motion as a function of numbers.
+
+    ``values`` maps Symbols to numbers; ``target`` is ``"numpy"``, ``"mpmath"`` (computed at mpmath's current
+    precision) or
+    ``"numba"`` (NumPy where numba is not installed).  What the scene has not, drive, dampers, springs, is not in the
+    code.
+
+    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number, SceneError for an
+    unknown target, TextError for text.
+
+    >>> from sympy import symbols
+    >>> from lagrangian import Rod, Scene, euler_lagrange
+    >>> m, l, g = symbols("m l g")
+    >>> equations = euler_lagrange(Scene([Rod.bob(m, l)] * 2))
+    >>> compile_equations(equations, {m: 1, l: 1, g: 10}).acceleration(0, [0, 0], [0, 0])
+    array([0., 0.])
+    """
+    if not isinstance(equations, EquationsOfMotion):
+        raise NotASceneError(f"equations is {equations!r}, not EquationsOfMotion: give euler_lagrange(scene).")
+    if not isinstance(target, str) or target not in TARGETS:
+        raise SceneError(f"target is {target!r}: give one of {', '.join(TARGETS)}.")
+    return CompiledEquations(equations, values, target)

@@ -1,0 +1,244 @@
+r"""The motion of a chain to the accuracy asked, with an estimate of what was reached.
+
+Every motion is computed twice: as asked, and with a smaller step, a higher order and the constants of the rods
+moved by one unit in the last place, so that the difference shows truncation, rounding and the rounding of the data,
+as the motion itself amplifies them.  The estimate is six times the largest difference so far.  Where it exceeds the
+accuracy asked for, steps are made finer, down to the rounding of float64; what chaos then still takes is
+reported, never hidden: from 2 rad, 10 s, a double pendulum keeps 12 digits, ten rods 2.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Mapping
+from math import ceil, log10
+from typing import Any
+
+import numpy as np
+
+from .chain import CompiledChain
+from .compiled import CompiledEquations, compile_equations
+from .crossings import Crossing, Interpolant, find_crossings
+from .digits import best_order, integrate_digits
+from .equations import EquationsOfMotion
+from .errors import NotASceneError, QuantityError, SceneError
+from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
+from .scene import quantity, refuse_text
+from .solvers import SCIPY_METHODS, integrate_heyoka, integrate_scipy
+from .stepper import TURN
+from .trajectory import Trajectory
+
+__all__ = ["simulate"]
+
+METHODS = ("taylor", *SCIPY_METHODS, "heyoka")
+SAFETY = 6.0
+FLOAT_LIMIT = 1e-14  # accuracies below it need more digits than float64 has
+
+
+def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, theta0: Any, omega0: Any, times: Any,
+             accuracy: float = 1e-10, method: str = "taylor", digits: int | None = None, dense: bool = False,
+             events: Mapping[str, Crossing] | None = None,
+             progress: bool | Callable[[float], None] = False) -> Trajectory:
+    """The motion from ``theta0, omega0`` at ``times[0]``, at all ``times``, as a :class:`Trajectory`.
+
+    Parameters
+    ----------
+    system : a :class:`CompiledChain`, or :func:`euler_lagrange` equations without free Symbols
+    theta0, omega0 : n numbers each, floats or exact (``pi/2`` is pi/2); rad, rad/s
+    times : m monotone times, growing or shrinking (the motion is followed backwards); s
+    accuracy : largest error of any angle that is wanted; rad.  Below 1e-14 numbers of enough digits are used
+    method : ``"taylor"``, a method of SciPy's ``solve_ivp`` (``"DOP853"``, ...), or ``"heyoka"`` if installed
+    digits : None, or how many decimal digits to compute with; results are then mpmath numbers
+    dense : whether ``trajectory.at(t)`` shall work between the times
+    events : named :class:`Crossing` to look for, such as ``flips(chain)``
+    progress : True for a line on the screen, or a function of the time reached
+
+    Raises
+    ------
+    NotASceneError, SceneError
+        Not a chain; a state of another length; times that are not monotone; a method that does not exist.
+    QuantityError, TextError, DriveError
+        Numbers that are not finite; text; a motion that cannot be followed; a support without a Taylor series.
+
+    Speed and accuracy
+    ------------------
+    Ten seconds from 2 rad: 0.6 ms for two rods (12 digits are left), 2 ms for five (8), 10 ms for ten (2), after a
+    second or two
+    of translation once per machine.  50 digits: two rods, 4 s.  A trajectory never claims what it has not: see
+    ``trajectory.error``, ``.predictable_until`` and ``.verdict``.
+
+    >>> chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], upright=False)
+    >>> motion = simulate(chain, [1, 2], [0, 0], [0, 1, 2])
+    >>> motion.accurate, motion.theta.shape, motion.energy_drift < 1e-13
+    (True, (3, 2), True)
+    """
+    chain, evaluated = _system(system)
+    n = len(chain)
+    times, exact_times = _times(times)
+    theta, omega = (_initial(x, name, n) for x, name in ((theta0, "theta0"), (omega0, "omega0")))
+    accuracy = float(quantity(accuracy, "accuracy"))
+    if not accuracy > 0:
+        raise QuantityError(f"an accuracy is positive, and this one is {accuracy}: give the error in rad that may "
+                            f"remain.")
+    if not isinstance(method, str) or method not in METHODS:
+        raise SceneError(f"method is {method!r}: give one of {', '.join(METHODS)}.")
+    report = _reporter(progress, times)
+    if digits is not None or accuracy < FLOAT_LIMIT:
+        if method != "taylor":
+            raise SceneError(f"method={method!r} computes in float64, which cannot give {accuracy:.1e}: choose "
+                             f"'taylor'.")
+        return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, report)
+    keep = dense or events is not None
+    if method == "taylor":
+        run, error = _to_accuracy(chain, theta, omega, times, accuracy, keep, report)
+    else:
+        if keep:
+            raise SceneError(f"dense output and events come from Taylor series, and method is {method!r}: choose "
+                             f"'taylor'.")
+        run, error = _by_others(chain, evaluated, theta, omega, times, accuracy, method)
+    motion = Interpolant(run.record, n, run.order) if keep else None
+    found = find_crossings(motion, events, times[-1]) if motion is not None and events is not None else {}
+    return Trajectory(times, run.theta, run.omega, run.turns.astype(np.int64), run.angle,
+                      chain.energy(run.angle.T if chain.springs is None else run.theta.T, run.omega.T), error, accuracy,
+                      method, run.steps, run.order, chain, found, motion if dense else None)
+
+
+# -- Taylor series in float64 ---------------------------------------------------------------------------------
+
+
+def _to_accuracy(chain: CompiledChain, theta: Any, omega: Any, times: Any, accuracy: float, keep: bool,
+                 report: Callable[[float], None] | None) -> tuple[FloatRun, Any]:
+    tolerance = max(FINEST, accuracy * 1e-3)
+    while True:
+        order = min(ORDER, best_order(-log10(tolerance)))
+        run = integrate_floats(chain, theta, omega, times, order, tolerance, None, keep, report)
+        other = integrate_floats(chain, theta, omega, times, order + 2, tolerance / 30, _moved(chain.rods), False)
+        error = _estimate(run, other)
+        if error[-1] <= accuracy or tolerance <= FINEST:
+            return run, error
+        tolerance = max(FINEST, tolerance * min(1e-2, 1e-2 * accuracy / error[-1]))
+
+
+def _moved(rods: Any) -> Any:
+    """The constants moved by one unit in the last place, up and down in turn."""
+    signs = np.where((np.arange(rods.size) // 3 % 2 == 0).reshape(rods.shape), 1.0, -1.0)
+    return rods * (1.0 + signs * np.finfo(float).eps)
+
+
+def _estimate(run: FloatRun, other: FloatRun) -> Any:
+    difference = abs((run.angle - other.angle) + TURN * (run.turns - other.turns)).max(axis=1)
+    grown = np.maximum.accumulate(np.where(np.isfinite(difference), difference, np.inf))
+    return SAFETY * grown + 2 * np.finfo(float).eps * np.pi
+
+
+# -- other methods, other digits ------------------------------------------------------------------------------
+
+
+def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times: Any, accuracy: float,
+               method: str) -> tuple[FloatRun, Any]:
+    """The error is that against Taylor steps two digits finer, and theirs added."""
+    start = [np.array([float(x) for x in part]) for part in (theta, omega)]
+    if method == "heyoka":
+        angles, rates, steps = integrate_heyoka(chain, start[0], start[1], times, accuracy * 1e-3)
+    else:
+        angles, rates, steps = integrate_scipy(system, start[0], start[1], times, method, accuracy * 1e-2)
+    run = FloatRun(*wrapped(angles, np.zeros_like(angles)), rates, steps, 0)
+    better, error = _to_accuracy(chain, theta, omega, times, max(accuracy * 1e-2, FLOAT_LIMIT), False, None)
+    return run, _estimate(run, better) + error
+
+
+def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact_times: Any, accuracy: float,
+                 digits: int | None, report: Callable[[float], None] | None) -> Trajectory:
+    if digits is not None and (isinstance(digits, bool) or not isinstance(digits, int) or digits < 1):
+        raise QuantityError(f"digits is {digits!r}: give how many decimal digits to compute with, such as 30.")
+    used = digits if digits is not None else ceil(-log10(accuracy)) + 6
+    exact = [[quantity(x, "state") for x in part] for part in (theta, omega)]
+    while True:
+        angles, rates, steps = integrate_digits(chain, exact[0], exact[1], exact_times, used, None, report)
+        finer, _, _ = integrate_digits(chain, exact[0], exact[1], exact_times, used + 8, None, report)
+        context = angles.flat[0].context
+        differences = [max(abs(x - context.convert(y)) for x, y in zip(*rows, strict=True))
+                       for rows in zip(angles, finer, strict=True)]
+        error = SAFETY * np.maximum.accumulate(np.array([float(x) for x in differences])) + 10.0**-used
+        if digits is not None or error[-1] <= accuracy:
+            break
+        used += 2 + ceil(log10(error[-1] / accuracy))
+    turns = np.array([[int(context.nint(x / (2 * context.pi))) for x in row] for row in angles])
+    angle = angles - turns * (2 * context.pi)
+    energy = chain.energy(np.asarray(angle if chain.springs is None else angles, dtype=float).T,
+                          np.asarray(rates, dtype=float).T)
+    return Trajectory(times, angles, rates, turns, angle, energy, error, accuracy, f"taylor, {used} digits", steps,
+                      best_order(used), chain)
+
+
+# -- what is given --------------------------------------------------------------------------------------------
+
+
+def _system(system: Any) -> tuple[CompiledChain, Any]:
+    """The chain, and what evaluates accelerations for other people's solvers."""
+    if isinstance(system, CompiledChain):
+        return system, system
+    if isinstance(system, EquationsOfMotion):
+        system = compile_equations(system)
+    if isinstance(system, CompiledEquations):
+        return system.chain, system
+    refuse_text(system, "system")
+    raise NotASceneError(f"simulate moves a CompiledChain or euler_lagrange equations, and this is {system!r}: give "
+                         f"scene.compile(values).")
+
+
+def _times(times: Any) -> tuple[Any, list[Any]]:
+    refuse_text(times, "times")
+    try:
+        exact = [quantity(x, f"times[{i}]") for i, x in enumerate(times)]
+    except TypeError as refusal:
+        if type(refusal) is not TypeError:
+            raise
+        raise SceneError(f"times is {times!r}: give a list of times, the first of which is that of theta0.") from None
+    found = np.array([float(x) for x in exact])
+    steps = np.diff(found)
+    if not len(found) or not ((steps >= 0).all() or (steps <= 0).all()):
+        raise SceneError("the t_span is a list of times that grow, or shrink for the motion backwards, with at least "
+                         "one "
+                         "of them: give times in order.")
+    return found, exact
+
+
+def _initial(values: Any, name: str, n: int) -> Any:
+    refuse_text(values, name)
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiu":
+        found: Any = values.astype(np.float64)
+        if not np.isfinite(found).all():
+            raise QuantityError(f"{name} holds {found[~np.isfinite(found)].flat[0]}, which is not finite: give finite "
+                                f"numbers.")
+    else:
+        try:
+            found = [quantity(x, f"{name}[{k}]") for k, x in enumerate(values)]
+        except TypeError as refusal:
+            if type(refusal) is not TypeError:
+                raise
+            raise SceneError(f"{name} is {values!r}: give one number for each of the {n} rods.") from None
+        symbols = [x for x in found if not x.is_number]
+        if symbols:
+            raise QuantityError(f"{name} holds {symbols[0]}, which is no number: give numbers, such as 1/2 or pi.")
+    if len(found) != n or np.ndim(found) != 1:
+        raise SceneError(f"the chain has {n} rods, and {name} has shape {np.shape(found)}: give {n} numbers.")
+    return found
+
+
+def _reporter(progress: Any, times: Any) -> Callable[[float], None] | None:
+    if callable(progress):
+        return progress  # type: ignore[no-any-return]
+    if not progress:
+        return None
+    started = time.monotonic()
+
+    def line(now: float) -> None:
+        part = (now - times[0]) / (times[-1] - times[0]) if times[-1] != times[0] else 1.0
+        sys.stderr.write(f"\rt = {now:.4g} of {times[-1]:.4g} ({100 * min(1.0, part):.0f} %), "
+                         f"{time.monotonic() - started:.0f} s")
+        sys.stderr.write("\n" if part >= 1 else "")
+    return line
+
+

@@ -1,0 +1,79 @@
+"""Other people's integrators on the same right-hand side: SciPy's ``solve_ivp``, and heyoka's Taylor method."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+
+from .chain import CompiledChain
+from .errors import QuantityError, SceneError
+from .recursion import accelerate_rods
+
+__all__ = ["SCIPY_METHODS", "integrate_heyoka", "integrate_scipy"]
+
+SCIPY_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
+FINEST = 3e-14  # below it SciPy warns that nothing is gained
+
+
+def integrate_scipy(system: Any, theta: Any, omega: Any, times: Any, method: str,
+                    tolerance: float) -> tuple[Any, Any, int]:
+    """Angles and rates, shape (times, n) each, and the number of evaluations, by ``scipy.integrate.solve_ivp``.
+
+    ``system`` is anything with ``acceleration(t, theta, omega)``.  Raises QuantityError where the solver gives up.
+    """
+    if find_spec("scipy") is None:
+        raise SceneError(f"method={method!r} is SciPy's, and SciPy is not installed: pip install scipy, or "
+                         f"method='taylor'.")
+    n = len(theta)
+
+    def rate(t: float, y: Any) -> Any:
+        return np.concatenate([y[n:], system.acceleration(t, y[:n], y[n:])])
+
+    start = np.concatenate([theta, omega])
+    if len(times) == 1:
+        return start[None, :n], start[None, n:], 0
+    tolerance = max(FINEST, tolerance)
+    solve = import_module("scipy.integrate").solve_ivp
+    result = solve(rate, (times[0], times[-1]), start, method, times, rtol=tolerance, atol=tolerance)
+    if not result.success:
+        raise QuantityError(f"{method} stopped: {result.message}  Ask for less accuracy, or method='taylor'.")
+    return result.y[:n].T, result.y[n:].T, int(result.nfev)
+
+
+def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
+    """The equations as heyoka expressions: the recursion of this package, run on expressions instead of numbers."""
+    n = len(chain)
+    names = heyoka.make_vars(*(f"theta{k}" for k in range(n)), *(f"omega{k}" for k in range(n)))
+    theta, omega = (np.array(part, dtype=object) for part in (names[:n], names[n:]))
+    joints = [theta[0], *(theta[k] - theta[k - 1] for k in range(1, n))]
+    s, c = (np.array([f(x) for x in joints], dtype=object) for f in (heyoka.sin, heyoka.cos))
+    if chain.support.function is not None:
+        raise SceneError("heyoka gets the support's motion as waves c cos(qt) + s sin(qt): choose method='taylor'.")
+    constant, waves = chain.support.floats
+    ax, ay = heyoka.expression(constant[0]), heyoka.expression(constant[1] + float(chain.gravity))
+    for q, cx, sx, cy, sy in waves:
+        cosine, sine = heyoka.cos(q * heyoka.time), heyoka.sin(q * heyoka.time)
+        ax, ay = ax + cx * cosine + sx * sine, ay + cy * cosine + sy * sine
+    out, work = np.empty(n, dtype=object), np.empty((n, 3), dtype=object)
+    accelerate_rods(chain.rods, omega * omega, chain.torques(theta, omega), s, c, ax, chain.up * ay, work, out)
+    return [*zip(theta, omega, strict=True), *zip(omega, out, strict=True)]
+
+
+def integrate_heyoka(chain: CompiledChain, theta: Any, omega: Any, times: Any,
+                     tolerance: float) -> tuple[Any, Any, int]:
+    """Angles and rates by heyoka, which first compiles the equations, for minutes where chains are long."""
+    if find_spec("heyoka") is None:
+        raise SceneError("method='heyoka' needs heyoka, which is not installed: pip install heyoka, or "
+                         "method='taylor'.")
+    heyoka = import_module("heyoka")
+    n, start = len(theta), [*theta, *omega]
+    system = heyoka_system(chain, heyoka)
+    integrator = heyoka.taylor_adaptive(system, start, time=float(times[0]), tol=max(1e-16, tolerance))
+    outcome = integrator.propagate_grid(np.asarray(times, dtype=float))
+    states = outcome[-1]
+    if not np.isfinite(states).all():
+        raise QuantityError(f"heyoka stopped with the outcome {outcome[0]}.")
+    return states[:, :n], states[:, n:], int(outcome[3])

@@ -1,0 +1,120 @@
+"""What a simulation gives: states, energies, and how far they may be believed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from .animation import animate
+from .errors import QuantityError
+from .plotting import plot
+
+__all__ = ["Trajectory"]
+
+
+@dataclass(frozen=True, repr=False)
+class Trajectory:
+    """The motion of a chain at given times, with an estimate of its own error.  Immutable.
+
+    Attributes
+    ----------
+    times : shape (m,); s
+    theta, omega : shape (m, n): angles with all their turns, and rates; rad, rad/s
+    turns, wrapped : shape (m, n): ``theta = wrapped + 2 pi turns``, ``|wrapped| <= pi``, which keeps digits that theta
+        itself cannot hold after many turns
+    energy : shape (m,), in the frame of the support; J.  See :meth:`lagrangian.CompiledChain.energy`
+    error : shape (m,): estimated largest error of any angle up to each time; rad.  It is an estimate from a second,
+        tighter
+        run with other rounding of the data, not a bound
+    accuracy : the error that was asked for; rad
+    method, steps, order : how the motion was found
+    events : mapping of names to arrays of times, see :class:`lagrangian.Crossing`
+    chain : the :class:`lagrangian.CompiledChain`
+    """
+
+    times: Any
+    theta: Any
+    omega: Any
+    turns: Any
+    wrapped: Any
+    energy: Any
+    error: Any
+    accuracy: float
+    method: str
+    steps: int
+    order: int
+    chain: Any
+    events: Mapping[str, Any] = field(default_factory=dict)
+    interpolant: Any = None
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    @property
+    def accurate(self) -> bool:
+        """Whether the estimated error stays within the accuracy asked for."""
+        return bool(self.error[-1] <= self.accuracy)
+
+    @property
+    def predictable_until(self) -> Any:
+        """The first of ``times`` at which the accuracy asked for is lost, to chaos or rounding; None if it never is."""
+        lost = np.flatnonzero(self.error > self.accuracy)
+        return self.times[lost[0]] if lost.size else None
+
+    @property
+    def energy_drift(self) -> float:
+        """The largest change of energy since the start, as a fraction of ``M g L``."""
+        return float(abs(np.asarray(self.energy - self.energy[0], dtype=float)).max() / self.chain.energy_scale)
+
+    @property
+    def verdict(self) -> str:
+        """One sentence on how far the numbers may be believed."""
+        worst = float(self.error[-1])
+        if self.accurate:
+            return f"Every angle is within about {worst:.1e} rad of the true motion; {self.accuracy:.1e} was asked for."
+        return (f"From t = {float(self.predictable_until):.6g} on the accuracy asked for, {self.accuracy:.1e} rad, is "
+                f"lost: errors "
+                f"grow to {worst:.1e} rad.  Ask for more digits, as in simulate(..., digits=40), to see further.")
+
+    def at(self, t: Any) -> tuple[Any, Any]:
+        """Angles and rates at any time within the span, shape (n,), or (k, n) for k times; needs ``dense=True``."""
+        if self.interpolant is None:
+            raise QuantityError("states between the times asked for are kept on request: simulate(..., dense=True).")
+        return self.interpolant(t)  # type: ignore[no-any-return]
+
+    def positions(self) -> tuple[Any, Any]:
+        """Joints and tip relative to the support, x to the right and y upwards, shape (m, n + 1) each; m."""
+        theta = np.asarray(self.theta, dtype=float)
+        length = self.chain.rods[:, 1]
+        x, y = np.cumsum(length * np.sin(theta), axis=1), np.cumsum(self.chain.up * length * np.cos(theta), axis=1)
+        start = np.zeros((len(theta), 1))
+        return np.concatenate([start, x], axis=1), np.concatenate([start, y], axis=1)
+
+    def to_xarray(self) -> Any:
+        """An ``xarray.Dataset`` over time and rod (1, ..., n); needs xarray."""
+        xarray = import_module("xarray")
+        rod = np.arange(1, self.theta.shape[1] + 1)
+        both, units = ("time", "rod"), {"theta": "rad", "omega": "rad/s", "energy": "J", "error": "rad"}
+        data = {"theta": (both, self.theta), "omega": (both, self.omega), "turns": (both, self.turns),
+                "energy": ("time", self.energy), "error": ("time", self.error)}
+        variables = {name: (*value, {"units": units[name]} if name in units else {}) for name, value in data.items()}
+        notes = {"method": self.method, "accuracy": self.accuracy, "verdict": self.verdict, "model": self.chain.model}
+        return xarray.Dataset(variables, {"time": self.times, "rod": rod}, notes)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Angles over time, and the estimated error below them; returns the matplotlib figure."""
+        return plot(self, axes)
+
+    def animate(self, path: Any = None, seconds: float | None = None, frames: int = 150, trail: int = 40) -> Any:
+        """A film of the chain: a matplotlib animation, written to ``path`` if it ends in .gif or .html."""
+        return animate(self, path, seconds, frames, trail)
+
+    def __repr__(self) -> str:
+        span = f"{float(self.times[0]):.6g} to {float(self.times[-1]):.6g}"
+        return (f"Trajectory({self.theta.shape[1]} rods, {len(self)} times from {span}, {self.method}, {self.steps} "
+                f"steps, "
+                f"error {float(self.error[-1]):.1e} rad)")

@@ -1,0 +1,365 @@
+"""Motions of chains: against references to 30 digits, against laws, and against their own estimate of their error."""
+
+import json
+import math
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from sympy import Rational, Symbol, cos, pi, sin, sqrt, symbols, sympify
+
+from lagrangian import (
+    CompiledChain,
+    Crossing,
+    DriveError,
+    NotASceneError,
+    QuantityError,
+    Rod,
+    Scene,
+    SceneError,
+    Support,
+    TextError,
+    euler_lagrange,
+    flips,
+    simulate,
+)
+
+t = Symbol("t")
+CASES = json.loads((Path(__file__).parent / "cases" / "trajectories.json").read_text())["cases"]
+# An example follows a motion two or three times, some milliseconds each.
+measured = settings(max_examples=min(150, settings.default.max_examples), deadline=None)
+slow = settings(max_examples=min(20, settings.default.max_examples), deadline=None)
+each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: case["id"])
+
+
+def read(text):
+    """The exact number that a reference string holds."""
+    return sympify(text, rational=True)
+
+
+def scene_of(case):
+    """The scene of a reference motion."""
+    columns = (case[name] for name in ("m", "l", "H", "R2"))
+    rods = [Rod(read(m), read(l), read(H), sqrt(read(RR))) for m, l, H, RR in zip(*columns)]
+
+    def waves(terms):
+        return sum((read(a) * {"cos": cos, "sin": sin}[f](read(q) * t) for a, q, f in terms), Rational(0))
+
+    return Scene(rods, Support(waves(case["xi"]), waves(case["eta"])), read(case["g"]), t=t)
+
+
+def motion_of(case, **options):
+    """The reference motion, simulated."""
+    times = [read(case["t0"]), *(read(point["t"]) for point in case["points"])]
+    state = [[read(x) for x in case[name]] for name in ("theta0", "omega0")]
+    return simulate(scene_of(case).compile(), *state, times, **options)
+
+
+def worst(motion, case):
+    """The largest error of any angle or rate."""
+    with mpmath.workdps(40):
+        n, errors = case["N"], []
+        for i, point in enumerate(case["points"], 1):
+            exact = [mpmath.mpf(x) for x in point["state"]]
+            for k in range(n):
+                angle = mpmath.mpf(motion.wrapped[i, k]) + 2 * mpmath.pi * int(motion.turns[i, k])
+                errors += [abs(angle - exact[k]), abs(mpmath.mpf(motion.omega[i, k]) - exact[n + k])]
+        return max(errors)
+
+
+@st.composite
+def chains(draw, damped=False, gravity=9.81, most=4):
+    """Random rods, in both conventions."""
+    rng = np.random.default_rng(draw(st.integers(0, 10**9)))
+    n = draw(st.integers(1, most))
+    length = rng.uniform(0.3, 2.0, n)
+    center = rng.uniform(-0.2, 1.0, n) * length
+    gyration = np.sqrt(center**2 + rng.uniform(0.05, 0.5, n) * length**2)
+    damping = rng.uniform(0.0, 0.2, n) if damped else None
+    springs = rng.uniform(0.0, 2.0, n) if draw(st.booleans()) else None
+    return CompiledChain(rng.uniform(0.3, 2.0, n), length, center, gyration, gravity, (0, 0), damping, springs,
+                         draw(st.booleans()))
+
+
+def state_of(draw, n):
+    """Angles and rates."""
+    rng = np.random.default_rng(draw(st.integers(0, 10**9)))
+    return rng.uniform(-3.0, 3.0, n), rng.normal(size=n)
+
+
+@each_case
+def test_reference_motions_to_12_digits_in_floats(case):
+    """Eight motions, driven and free, of one to ten rods, known to 30 digits."""
+    motion = motion_of(case, accuracy=1e-13)
+
+    assert worst(motion, case) < 1e-12
+
+
+@pytest.mark.parametrize("case", [c for c in CASES if c["N"] <= 3], ids=lambda case: case["id"])
+def test_reference_motions_to_all_their_digits(case):
+    """The same stepper with 36 digits gives the 30 digits of the references."""
+    assert worst(motion_of(case, digits=36), case) < mpmath.mpf(10) ** -(case["ok_digits"] - 3)
+
+
+@slow
+@given(st.data())
+def test_estimated_error_is_honest(data):
+    """No angle is farther than the estimate from a run with 22 digits, whatever accuracy was asked for."""
+    chain = data.draw(chains())
+    state = state_of(data.draw, len(chain))
+    times = [0.0, 0.7, 1.4]
+    mine = simulate(chain, *state, times, accuracy=10.0 ** -data.draw(st.integers(5, 13)))
+    true = simulate(chain, *state, times, digits=22)
+
+    error = abs((true.theta - mine.theta.astype(object)).astype(float)).max(axis=1)
+    assert (error <= mine.error + 4e-16 * abs(mine.theta).max()).all()
+
+
+@measured
+@given(st.data())
+def test_energy_is_conserved(data):
+    """Without dampers, on a support at rest, to 1e-12 of M g L over ten seconds."""
+    chain = data.draw(chains())
+    motion = simulate(chain, *state_of(data.draw, len(chain)), np.linspace(0, 10, 21), accuracy=1e-12)
+
+    assert chain.conserves_energy
+    assert motion.energy_drift < 1e-12 * max(1.0, float(abs(motion.energy).max()) / chain.energy_scale)
+
+
+@measured
+@given(st.data())
+def test_dampers_take_energy_out(data):
+    """With dampers on every joint energy never grows, and dE/dt = -sum c delta'**2 over a short time."""
+    chain = data.draw(chains(damped=True))
+    motion = simulate(chain, *state_of(data.draw, len(chain)), np.linspace(0, 3, 301), accuracy=1e-11)
+    rates = np.diff(motion.omega, axis=1, prepend=0.0)
+    loss = (chain.damping * rates**2).sum(axis=1)
+    spent = np.concatenate([[0.0], np.cumsum((loss[1:] + loss[:-1]) / 2 * 0.01)])
+    scale = max(1.0, float(abs(motion.energy).max()))
+
+    assert (np.diff(motion.energy) <= 1e-12 * scale).all()
+    assert abs(motion.energy[0] - motion.energy - spent).max() < 2e-2 * max(scale, loss.max())
+
+
+@measured
+@given(st.data())
+def test_angular_momentum_about_the_support_is_conserved_without_gravity(data):
+    """No gravity, no springs to the ground: the support pushes, and it has no lever about itself."""
+    drawn = data.draw(chains(gravity=0))
+    chain = CompiledChain(*drawn.rods[:, :2].T, drawn.rods[:, 6] / drawn.rods[:, 0],
+                          np.sqrt(drawn.rods[:, 2] / drawn.rods[:, 0]), 0)
+    motion = simulate(chain, *state_of(data.draw, len(chain)), [0, 1, 5], accuracy=1e-12)
+    m, l, I, _, _, _, mH, _ = chain.rods.T
+    x, y = motion.positions()
+    theta, omega = motion.theta, motion.omega
+    vx, vy = (np.concatenate([np.zeros((3, 1)), np.cumsum(part, axis=1)], axis=1)[:, :-1] for part in
+              (l * np.cos(theta) * omega, -l * np.sin(theta) * omega))
+    x, y = x[:, :-1], y[:, :-1]
+    cx, cy = mH * np.sin(theta), mH * np.cos(theta)
+    ux, uy = mH * np.cos(theta) * omega, -mH * np.sin(theta) * omega
+    # clockwise, as theta: sum over rods of (y vx - x vy) for the near end, the centre, and the spin
+    momentum = (m * (y * vx - x * vy) + (y * ux - x * uy) + (cy * vx - cx * vy) + I * omega).sum(axis=1)
+
+    assert abs(momentum - momentum[0]).max() < 1e-11 * max(1.0, abs(momentum).max())
+
+
+@measured
+@given(st.data())
+def test_a_motion_followed_back_returns_to_its_start(data):
+    """Times that shrink: from the end to the beginning, also under a driven support."""
+    free = data.draw(chains())
+    chain = CompiledChain(*free.rods[:, :2].T, free.rods[:, 6] / free.rods[:, 0],
+                          np.sqrt(free.rods[:, 2] / free.rods[:, 0]), 9.81, lambda time: (np.cos(time), np.sin(2 * time)))
+    state = state_of(data.draw, len(chain))
+    there = simulate(chain, *state, [0, 1.5], accuracy=1e-11)
+    back = simulate(chain, there.theta[-1], there.omega[-1], [1.5, 0], accuracy=1e-11)
+    allowed = 100 * (there.error[-1] + back.error[-1]) + 1e-11
+
+    assert abs(back.theta[-1] - state[0]).max() < allowed
+    assert abs(back.omega[-1] - state[1]).max() < 30 * allowed
+
+
+@measured
+@given(st.data())
+def test_reversed_rates_run_the_motion_backwards(data):
+    """Without dampers, -omega at the end leads back to the start."""
+    chain = data.draw(chains(most=3))
+    theta, omega = state_of(data.draw, len(chain))
+    there = simulate(chain, theta, omega, [0, 1.5], accuracy=1e-11)
+    back = simulate(chain, there.theta[-1], -there.omega[-1], [0, 1.5], accuracy=1e-11)
+
+    assert abs(back.theta[-1] - theta).max() < 100 * (there.error[-1] + back.error[-1]) + 1e-11
+
+
+@measured
+@given(st.data())
+def test_upright_and_hanging_angles_describe_one_motion(data):
+    """theta = pi - phi along the whole motion."""
+    up = data.draw(chains(most=3))
+    rods = (*up.rods[:, :2].T, up.rods[:, 6] / up.rods[:, 0], np.sqrt(up.rods[:, 2] / up.rods[:, 0]))
+    theta, omega = state_of(data.draw, len(up))
+    times = [0, 1.0, 2.0]
+    one = simulate(CompiledChain(*rods), theta, omega, times, accuracy=1e-11)
+    exact = [pi - Rational(x) for x in theta]
+    other = simulate(CompiledChain(*rods, upright=False), exact, -omega, times, accuracy=1e-11)
+
+    assert abs(one.theta + other.theta - np.pi).max() < one.error[-1] + other.error[-1] + 1e-14
+    assert abs(one.energy - other.energy).max() < 1e-11 * one.chain.energy_scale
+
+
+def test_dense_output_passes_through_every_time():
+    """trajectory.at(t) between the times is what a run with those times gives."""
+    chain = CompiledChain([1, 2], [1, 1], [0.5, 0.5], [0.6, 0.6], 9.81, lambda time: (0, np.cos(5 * time)))
+    times = np.linspace(0, 4, 41)
+    sparse, full = simulate(chain, [2, 1], [0, 0], [0, 4], dense=True), simulate(chain, [2, 1], [0, 0], times)
+    theta, omega = sparse.at(times)
+
+    assert abs(theta - full.theta).max() < 1e-9 and abs(omega - full.omega).max() < 1e-8
+    assert sparse.at(1.0)[0].shape == (2,)
+    with pytest.raises(QuantityError, match="known from"):
+        sparse.at(4.5)
+    with pytest.raises(QuantityError, match="dense=True"):
+        full.at(1.0)
+
+
+def test_crossings_of_a_pendulum_are_half_periods_apart():
+    """T = 4 sqrt(l/g) K(sin(theta_0/2)), from the arithmetic-geometric mean."""
+    chain = CompiledChain([1], [1], [1], [1], 9.81, upright=False)
+    events = {"down": Crossing(1, 0.0), "to the left": Crossing(1, 0.0, -1)}
+    motion = simulate(chain, [2], [0], [0, 20], accuracy=1e-12, events=events)
+    period = 2 * math.pi / math.sqrt(9.81) / float(mpmath.agm(1, mpmath.cos(1)))
+    down, left = motion.events["down"], motion.events["to the left"]
+
+    assert len(down) > 10 and abs(np.diff(down) - period / 2).max() < 1e-11
+    assert abs(down[0] - period / 4) < 1e-12
+    assert abs(left - down[::2]).max() == 0
+
+
+def test_flips_are_counted_where_turns_change():
+    """A fast pendulum passes the top once a turn."""
+    chain = CompiledChain([1], [1], [1], [1], 1, upright=False)
+    motion = simulate(chain, [0], [5], [0, 10], events=flips(chain))
+    turns = motion.theta[-1, 0] / (2 * math.pi)
+
+    assert len(motion.events["flip 1"]) == round(turns)
+    assert (np.diff(motion.events["flip 1"]) > 0).all()
+    assert motion.turns[-1, 0] == round(turns) and abs(motion.wrapped).max() <= math.pi
+
+
+@pytest.mark.parametrize("method", ["RK45", "DOP853", "Radau", "LSODA"])
+def test_other_methods_give_the_same_motion_and_say_how_wrong_they_are(method):
+    """SciPy's solvers on the same chain, and on the symbolic equations."""
+    scene = Scene([Rod.uniform(1, 1)] * 2, Support(eta=cos(3 * t) / 10), Rational("9.81"))
+    times = np.linspace(0, 2, 5)
+    mine = simulate(scene.compile(), [1, 2], [0, 0], times, accuracy=1e-12)
+    for system in (scene.compile(), euler_lagrange(scene)):
+        other = simulate(system, [1, 2], [0, 0], times, accuracy=1e-6, method=method)
+
+        assert abs(other.theta - mine.theta).max() <= other.error[-1] < 1e-3
+
+
+def test_chaos_is_reported():
+    """Ten rods from 2 rad: float64 loses the motion before 10 s, and says when."""
+    ones = [1.0] * 10
+    motion = simulate(CompiledChain(ones, ones, ones, ones, upright=False), [2] * 10, [0] * 10, np.linspace(0, 20, 41))
+
+    assert not motion.accurate
+    assert 2 < motion.predictable_until < 15
+    assert "is lost" in motion.verdict and "digits" in motion.verdict
+    assert motion.energy_drift < 1e-12
+    assert (np.diff(motion.error) >= 0).all()
+
+
+def test_finer_accuracy_than_float64_takes_more_digits():
+    """accuracy=1e-25 gives mpmath numbers; energy and repr still work."""
+    chain = CompiledChain([1], [1], [1], [1], 9.81, upright=False)
+    motion = simulate(chain, [Rational(1, 2)], [0], [0, 1], accuracy=1e-25)
+    finer = simulate(chain, [Rational(1, 2)], [0], [0, 1], digits=40)
+
+    assert motion.accurate and abs(motion.theta[-1, 0] - finer.theta[-1, 0]) < mpmath.mpf(10) ** -25
+    assert "digits" in repr(motion) and motion.energy_drift < 1e-14
+
+
+def test_a_support_that_follows_any_smooth_function_of_time():
+    """A function of numpy's functions has a Taylor series; one of math's has not, and SciPy still takes it."""
+    ones = [1.0]
+    smooth = CompiledChain(ones, ones, ones, ones, 9.81, lambda x: (np.exp(-x) * np.sin(x), np.sqrt(1 + x**2)))
+    rough = CompiledChain(ones, ones, ones, ones, 9.81, lambda x: (math.exp(-x) * math.sin(x), math.hypot(1, x)))
+    mine = simulate(smooth, [0.3], [0.1], [0, 2])
+    assert mine.accurate
+    with pytest.raises(DriveError, match="power series"):
+        simulate(rough, [0.3], [0.1], [0, 2])
+    fine = simulate(smooth, [0.3], [0.1], [0, 2], method="DOP853", accuracy=1e-8)
+    assert abs(fine.theta - mine.theta).max() < 1e-7
+
+
+def test_angles_of_a_million_lose_what_their_float_does_not_hold_and_no_more():
+    """theta0 = 1e6 as a float and the same reduced by hand with 30 digits are one motion."""
+    chain = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], upright=False)
+    reduced = Rational(10**6) - 2 * pi * round(10**6 / (2 * math.pi))
+    far = simulate(chain, [1e6, 1e6], [0, 0], [0, 3])
+    near = simulate(chain, [reduced, reduced], [0, 0], [0, 3])
+
+    assert abs(far.wrapped - near.wrapped).max() < 1e-13
+
+
+def test_progress_is_reported_in_order():
+    """progress may be a function of the time reached."""
+    seen = []
+    ones = [1.0] * 3
+    simulate(CompiledChain(ones, ones, ones, ones, upright=False), [2] * 3, [0] * 3, np.linspace(0, 5, 6),
+             progress=seen.append)
+
+    assert seen and all(0 <= x <= 5.5 for x in seen)
+
+
+def test_a_trajectory_becomes_a_dataset_and_pictures(tmp_path):
+    """to_xarray, plot, animate to GIF and HTML."""
+    xarray = pytest.importorskip("xarray")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("Agg")
+    ones = [1.0] * 2
+    motion = simulate(CompiledChain(ones, ones, ones, ones, upright=False), [2, 2], [0, 0], np.linspace(0, 1, 21))
+    data = motion.to_xarray()
+    for name in ("film.gif", "film.html"):
+        motion.animate(tmp_path / name, frames=5)
+    figure = motion.plot()
+    figure.savefig(tmp_path / "picture.png")
+    pyplot.close(figure)
+
+    assert isinstance(data, xarray.Dataset) and data.theta.sel(rod=2).shape == (21,)
+    assert all((tmp_path / name).stat().st_size > 1000 for name in ("film.gif", "film.html", "picture.png"))
+    with pytest.raises(QuantityError, match=r"\.gif or \.html"):
+        motion.animate(tmp_path / "film.avi")
+
+
+CHAIN = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], upright=False)
+
+
+@pytest.mark.parametrize(("arguments", "options", "error", "words"), [
+    ((CHAIN, [1], [0, 0], [0, 1]), {}, SceneError, ["2 rods", "theta0"]),
+    ((CHAIN, "12", [0, 0], [0, 1]), {}, TextError, ["theta0"]),
+    ((CHAIN, ["1", 1], [0, 0], [0, 1]), {}, TextError, ["theta0[0]"]),
+    ((CHAIN, [symbols("x"), 1], [0, 0], [0, 1]), {}, QuantityError, ["x", "number"]),
+    ((CHAIN, [float("nan"), 1], [0, 0], [0, 1]), {}, QuantityError, ["finite"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 2, 1]), {}, SceneError, ["t_span", "order"]),
+    ((CHAIN, [1, 1], [0, 0], []), {}, SceneError, ["at least one"]),
+    ((CHAIN, [1, 1], [0, 0], 3), {}, SceneError, ["list of times"]),
+    ((CHAIN, [1, 1], [0, 0], ["0", "1"]), {}, TextError, ["times[0]"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"method": "euler"}, SceneError, ["'euler'", "taylor"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"accuracy": 0}, QuantityError, ["positive"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"digits": 0}, QuantityError, ["digits"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"digits": 30, "method": "RK45"}, SceneError, ["float64"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"dense": True, "method": "RK45"}, SceneError, ["Taylor"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"events": {"x": Crossing(3, 0.0)}}, SceneError, ["rods 1 to 2"]),
+    ((7, [1, 1], [0, 0], [0, 1]), {}, NotASceneError, ["CompiledChain"]),
+    (("chain", [1, 1], [0, 0], [0, 1]), {}, TextError, ["'chain'"]),
+])
+def test_what_cannot_be_simulated_is_refused(arguments, options, error, words):
+    """A named error with the claim, the value and the remedy; text is never evaluated."""
+    with pytest.raises(error) as refusal:
+        simulate(*arguments, **options)
+
+    assert all(word in str(refusal.value) for word in words)
