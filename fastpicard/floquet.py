@@ -29,7 +29,7 @@ from fastpicard.modes import Modes
 from fastpicard.picard import Increments, check_order, first_increments, identity_columns
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, read_constant
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
-from fastpicard.ring import ONE, Polynomial, generator, multiply, symbols_of, to_expression
+from fastpicard.ring import ONE, Polynomial, generator, multiply, normal, symbols_of, to_expression
 from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_form
 from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import Collapsed, vectorise
@@ -468,7 +468,7 @@ def _check_mode(matrix: SeriesMatrix, place: tuple[int, int], mode: Modes, lengt
 
 def _turns(frequency: algebra.Linear, length: Polynomial) -> Polynomial:
     """``q T / (2 pi)``."""
-    return multiply(multiply(algebra.as_polynomial(frequency), length), {((generator(pi), -1),): fmpq(1, 2)})
+    return normal(multiply(multiply(algebra.as_polynomial(frequency), length), {((generator(pi), -1),): fmpq(1, 2)}))
 
 
 def _remedy(matrix: SeriesMatrix) -> str:

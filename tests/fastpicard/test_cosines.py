@@ -6,9 +6,9 @@ import pytest
 import sympy
 from flint import arb, ctx, fmpq
 from hypothesis import given, strategies as st
-from sympy import I, Integer, Rational, cos, pi, root, sin, sqrt
+from sympy import I, Integer, Matrix, Rational, cos, pi, root, sin, sqrt
 
-from fastpicard import BadInputError, PoissonSeries, cosines
+from fastpicard import BadInputError, FloquetMatrix, NotPeriodicError, PoissonSeries, cosines
 from tests.strategies import a, b, t
 
 denominators = st.integers(1, 40)
@@ -169,3 +169,13 @@ def test_the_reciprocal_of_a_hidden_zero_is_refused():
     zero = cos(pi / 7) - cos(2 * pi / 7) + cos(3 * pi / 7) - Rational(1, 2)
     with pytest.raises(BadInputError):
         of(1 / zero)
+
+
+def test_periods_cancel_frequencies_that_are_cosines():
+    """cos(3 pi/7) is a sum of three numbers of the basis: over its period the angle makes one turn."""
+    rate = cos(3 * pi / 7)
+    F = FloquetMatrix(Matrix([[0, 1], [-a * cos(rate * t), 0]]), t, 2, 2 * pi / rate)
+
+    assert of(F.trace()) == 2
+    with pytest.raises(NotPeriodicError):
+        FloquetMatrix(Matrix([[cos(rate * t)]]), t, 2, pi / rate)
