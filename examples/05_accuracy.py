@@ -103,7 +103,7 @@ def cells(expression: object, x: str, y: str) -> list[str]:
     evaluator = Evaluator(constants, (a, b))
     columns = [np.array([float(x)]), np.array([float(y)])]
     (polynomial,), given = evaluator.polynomials, dict(zip((a, b), columns, strict=True))
-    variables = [v.values(given).scaled(s) for v, s in zip(constants.variables, evaluator.scales, strict=True)]
+    variables = [v.values(given, constants.time).scaled(s) for v, s in zip(constants.variables, evaluator.scales, strict=True)]
     with np.errstate(all="ignore"):
         plain, (r, e) = polynomial.floats(variables, 1), polynomial.pairs(variables, 1)
         values, bounds, route = evaluator(columns)

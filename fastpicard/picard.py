@@ -16,7 +16,7 @@ starts at ``u = 0``.
 from __future__ import annotations
 
 import numbers
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -35,6 +35,7 @@ from fastpicard.modes import Modes
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, read_constant
 from fastpicard.ring import ONE, Polynomial
 from fastpicard.series import PoissonSeries
+from fastpicard.vectorise import Collapsed, vectorise
 
 # Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
 SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)
@@ -285,6 +286,28 @@ class PicardIterate:
             if a parameter has no value.
         """
         return self.series.evaluate(t_value, values, digits)
+
+    def lambdify(self, t_value: Any, params: Sequence[Symbol], bound: bool = False) -> Callable[..., Any]:
+        """A NumPy function of the parameters for the iterate at one time; arrays broadcast to (..., rows, columns).
+
+        Every entry is right to 10 ulp of the largest, with ``bound=True`` beside its proved bound:
+        see :meth:`fastpicard.FloquetMatrix.lambdify`.  ``t_value`` is a number as for :meth:`evaluate`.
+
+        Raises
+        ------
+        MissingParameterError
+            if a parameter is not among ``params``.
+
+        Examples
+        --------
+        >>> from sympy import Matrix, cos
+        >>> from sympy.abc import a, b, t
+        >>> Phi = FundamentalMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 20)
+        >>> print(Phi.lambdify(0.5, [a, b])([0, 2.5], [0, 1.5])[:, 0, 0])
+        [1.         0.54332602]
+        """
+        return vectorise(Collapsed([modes for row in self.series.rows for modes in row], self.t, t_value), params,
+                         self.shape, bound)
 
     def __repr__(self) -> str:
         rows, columns = self.shape

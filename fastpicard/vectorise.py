@@ -1,9 +1,9 @@
 r"""Exact constants as numbers, for one point or a million, no digit of which misleads.
 
-All that does not depend on the parameters is collapsed, in balls, into one
-coefficient for each monomial *before* anything is rounded.  What is left is a
-polynomial in few variables: the parameters, their reciprocals, roots and
-functions, sines and cosines of symbolic phases.
+All that does not depend on the parameters, the time too, is collapsed, in balls,
+into one coefficient for each monomial *before* anything is rounded.  What is left
+is a polynomial in few variables: the parameters, their reciprocals, roots and
+functions, sines and cosines of symbolic phases and frequencies.
 
 **Which arithmetic.**  Let v be the exact entries at a point (one, for a trace), and
 ``u = 2**-53``; every output shall be right to ``10 u max |v|``, which is at most 10 ulp of
@@ -32,7 +32,7 @@ import sympy
 from flint import arb, ctx, fmpq
 from sympy import Symbol
 
-from fastpicard import doubledouble
+from fastpicard import doubledouble, modes as algebra
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.evaluate import (
@@ -40,6 +40,7 @@ from fastpicard.evaluate import (
     Point,
     Values,
     check_digits,
+    exact_number,
     exact_values,
     free_symbols,
     numpy,
@@ -47,7 +48,7 @@ from fastpicard.evaluate import (
     to_number,
 )
 from fastpicard.horner import Exponents, program, run
-from fastpicard.modes import COS, NO_ANGLE, Angle, Modes
+from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Modes
 from fastpicard.ring import Monomial, expression_of, symbols_of
 
 Array = Any
@@ -69,7 +70,7 @@ class Variable:
     @property
     def symbols(self) -> set[Symbol]:
         """The parameters it depends on."""
-        return symbols_of([self.power, *(m for m, _ in self.wave[1][1])])
+        return symbols_of([self.power, *(m for form in self.wave[1] for m, _ in form)])
 
     def ball(self, point: Point) -> Any:
         """Its value in balls."""
@@ -86,11 +87,11 @@ class Variable:
             return expression_of(self.power[0][0]), int(self.power[0][1])
         return None, 0
 
-    def values(self, columns: dict[Symbol, Array]) -> doubledouble.Variable:
+    def values(self, columns: dict[Symbol, Array], time: Any) -> doubledouble.Variable:
         """Its values for columns of parameters."""
         symbol, unit = self.parameter
         if symbol is None:
-            return _by_balls(self, columns)
+            return _by_balls(self, columns, time)
         x = columns[symbol]
         if unit == 1:
             return doubledouble.Variable(x, None)
@@ -104,12 +105,13 @@ class Collapsed:
 
     Parameters
     ----------
-    constants : series free of the time
+    constants : series
     t : Symbol
+    time : the time at which the series are taken, an exact number
     """
 
-    def __init__(self, constants: list[Modes], t: Symbol) -> None:
-        self.t = t
+    def __init__(self, constants: list[Modes], t: Symbol, time: Any = 0) -> None:
+        self.t, self.time = t, exact_number(time, "the time")
         self.symbols = set().union(*map(free_symbols, constants)) if constants else set()
         names = _variables(constants)
         parts = [_parts(modes, names) for modes in constants]
@@ -127,13 +129,13 @@ class Collapsed:
         if ctx.prec not in self._balls:
             if len(self._balls) > 3:
                 del self._balls[min(self._balls)]
-            constant = Point(arb(0), {})
+            constant = Point(self.time, {})
             self._balls[ctx.prec] = [[constant(modes) for modes in part] for part in self._inner]
         return self._balls[ctx.prec]
 
     def balls(self, values: dict[Symbol, Any]) -> list[Any]:
         """The constants at a point, at the working precision."""
-        point = Point(arb(0), values)
+        point = Point(self.time, values)
         variables = [v.ball(point) for v in self.variables]
         return [arb(run(steps, row, variables)) for steps, row in zip(self.programs, self.coefficients(), strict=True)]
 
@@ -159,9 +161,9 @@ def _variables(constants: list[Modes]) -> dict[Variable, int]:
     powers: dict[tuple[int, bool], set[Any]] = {}
     waves: dict[Variable, int] = {}
     for modes in constants:
-        for kind, angle, monomial in modes:
+        for _, angle, monomial in modes:
             if _is_symbolic(angle):
-                waves.setdefault(Variable(wave=(kind, angle)), 0)
+                waves.update({Variable(wave=(COS, angle)): 0, Variable(wave=(SIN, angle)): 0})
             for g, e in monomial:
                 if expression_of(g).free_symbols:
                     powers.setdefault((g, e > 0), set()).add(e)
@@ -170,7 +172,7 @@ def _variables(constants: list[Modes]) -> dict[Variable, int]:
 
 
 def _is_symbolic(angle: Angle) -> bool:
-    return bool(symbols_of(m for m, _ in angle[1]))
+    return bool(symbols_of(m for form in angle for m, _ in form))
 
 
 def _unit(g: int, exponents: set[Any]) -> Any:
@@ -186,7 +188,12 @@ def _unit(g: int, exponents: set[Any]) -> Any:
 
 
 def _parts(modes: Modes, names: dict[Variable, int]) -> dict[Exponents, Modes]:
-    """A constant by monomials: exponents of the variables, and the rest, which is free of parameters."""
+    """A constant by monomials: exponents of the variables, and the rest, which is free of parameters.
+
+    A wave with a symbolic angle leaves a polynomial in t, the real and imaginary parts of ``f(-i t)`` at angle 0:
+
+        Re (c + i s)(x + i y) = c x - s y,     Im (c + i s)(x + i y) = s x + c y
+    """
     places = {(v.power[0][0], v.power[0][1] > 0): (j, v.power[0][1]) for v, j in names.items() if v.power}
     parts: dict[Exponents, Modes] = {}
     for (kind, angle, monomial), f in modes.items():
@@ -197,10 +204,14 @@ def _parts(modes: Modes, names: dict[Variable, int]) -> dict[Exponents, Modes]:
                 exponents[j] = int(Fraction(e) / unit)
             else:
                 rest.append((g, e))
-        if _is_symbolic(angle):
-            exponents[names[Variable(wave=(kind, angle))]] = 1
-            kind, angle = COS, NO_ANGLE
-        parts.setdefault(tuple(exponents), {})[kind, angle, tuple(rest)] = f
+        if not _is_symbolic(angle):
+            parts.setdefault(tuple(exponents), {})[kind, angle, tuple(rest)] = f
+            continue
+        other = ((1 - kind, SIN, -f if kind == COS else f),) if f.degree() > 0 else ()
+        for wave, part, g in ((kind, COS, f), *other):
+            j = names[Variable(wave=(wave, angle))]
+            place = (*exponents[:j], 1, *exponents[j + 1:])
+            algebra.add_mode(parts.setdefault(place, {}), part, NO_ANGLE, tuple(rest), g)
     return parts
 
 
@@ -265,7 +276,8 @@ class Evaluator:
     def _block(self, columns: list[Array], values: Array, bounds: Array, route: Array) -> None:
         """Fill in what float64 and pairs can do for one block."""
         np, given = numpy(), dict(zip(self.names, columns, strict=True))
-        variables = [v.values(given).scaled(s) for v, s in zip(self.collapsed.variables, self.scales, strict=True)]
+        variables = [v.values(given, self.collapsed.time).scaled(s)
+                     for v, s in zip(self.collapsed.variables, self.scales, strict=True)]
         inside = np.ones(len(route), dtype=bool)
         for variable in variables:
             inside &= variable.inside(self.limit)
@@ -326,21 +338,21 @@ def _with_bound(x: Any) -> tuple[float, float]:
     return value, math.nextafter(to_number((x - arb(value)).abs_upper(), None), math.inf)
 
 
-def _by_balls(variable: Variable, columns: dict[Symbol, Array]) -> doubledouble.Variable:
+def _by_balls(variable: Variable, columns: dict[Symbol, Array], time: Any) -> doubledouble.Variable:
     """The values of a function of parameters as pairs, through balls: once for every different point."""
     np, names = numpy(), sorted(variable.symbols, key=str)
     points, inverse = np.unique(np.stack([columns[s] for s in names]), axis=1, return_inverse=True)
-    pairs = np.array([_ball_pair(variable, dict(zip(names, point, strict=True))) for point in points.T]).reshape(-1, 2)
+    pairs = np.array([_ball_pair(variable, dict(zip(names, x, strict=True)), time) for x in points.T]).reshape(-1, 2)
     return doubledouble.Variable(*pairs[inverse.reshape(-1)].T)
 
 
-def _ball_pair(variable: Variable, at: dict[Symbol, float]) -> tuple[float, float]:
+def _ball_pair(variable: Variable, at: dict[Symbol, float], time: Any) -> tuple[float, float]:
     """One value as a pair of floats right to ``2**-106``, or nan where there is none: a pole, or no digits at all."""
     if not all(map(math.isfinite, at.values())):
         return math.nan, math.nan
     exact = {s: fmpq(*map(int, float(x).as_integer_ratio())) for s, x in at.items()}
     with ctx.workprec(192):
-        x = variable.ball(Point(arb(0), exact))
+        x = variable.ball(Point(time, exact))
     high, low = _rounded(x, 0) if x.is_finite() else (math.nan, math.nan)
     return (high, low) if x == 0 or high and x.rel_accuracy_bits() >= 110 else (math.nan, math.nan)
 

@@ -9,9 +9,9 @@ from flint import ctx
 from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Mul, Rational, cos, exp, pi, sin, sqrt
 
-from fastpicard import FloquetMatrix, PoissonSeries
+from fastpicard import FloquetMatrix, FundamentalMatrix, MissingParameterError, PoissonSeries, fast_picard
 from fastpicard.vectorise import BALL, BLOCK, FLOAT, PAIR, Collapsed, Evaluator, vectorise
-from tests.strategies import a, b, c, phi, t
+from tests.strategies import a, b, c, phi, t, w
 
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])
 LARGEST = Fraction(np.finfo(float).max)
@@ -248,3 +248,36 @@ def test_a_monomial_that_leaves_only_waves_and_a_product_of_generators_keeps_its
 
     assert found == pytest.approx(float(e.subs({phi: 0.7, a: 2, b: 3})), rel=1e-14)
     assert Mul(1, found) == found
+
+
+@pytest.mark.parametrize("time", [0, Rational(1, 2), -3.7, 2000 * pi, 6283.1, 1e-200], ids=str)
+@pytest.mark.parametrize(
+    "P, n",
+    [
+        (MATHIEU, 16),
+        (Matrix([[0, 1], [-a - b * cos(w * t + phi), sin(t)]]), 3),
+        (Matrix([[t * cos(phi - w * t), 1 / w], [-a, b * t * sin(w * t)]]), 2),
+    ],
+    ids=["Mathieu", "symbolic frequency and phase", "powers of time"],
+)
+def test_iterates_at_any_time_are_functions_of_their_parameters(P, n, time):
+    """Forty points, frequencies among the parameters, against balls with forty digits."""
+    X = FundamentalMatrix(P, t, n)
+    names = sorted({a, b, phi, w}, key=str)
+    points = np.random.default_rng(5).uniform(0.2, 3, (4, 40))
+
+    found, bounds = X.lambdify(time, names, bound=True)(*points)
+    assert found.shape == bounds.shape == (40, 2, 2)
+    for k, point in enumerate(points.T):
+        truths = [fraction(x) for x in X.evaluate(time, dict(zip(names, map(float, point))), 40)]
+        slack = max(map(abs, truths)) / 10**38
+        assert is_kept(found[k].ravel(), [float(Fraction(e) + slack) * (1 + 1e-15) for e in bounds[k].ravel()], truths)
+
+
+def test_columns_at_a_time_have_their_shape_and_miss_no_parameter():
+    """fast_picard gives (m, 1); a parameter that is not listed is named."""
+    X = fast_picard(MATHIEU, t, [1, 0], 4)
+
+    assert X.lambdify(1, [a, b])(np.ones((5, 1)), 0.5).shape == (5, 1, 2, 1)
+    with pytest.raises(MissingParameterError, match="b is missing"):
+        X.lambdify(1, [a])
