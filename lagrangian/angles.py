@@ -88,5 +88,5 @@ def sines_of_large_joints(theta: Any, s: Any, c: Any) -> None:
     s[0], c[0] = np.sin(theta[0]), np.cos(theta[0])
     for k in range(1, theta.shape[0]):
         d, e = difference(theta[k], theta[k - 1])
-        x, y = np.sin(d), np.cos(d)
-        s[k], c[k] = x + e * y, y - e * x
+        x, y, p, q = np.sin(d), np.cos(d), np.sin(e), np.cos(e)
+        s[k], c[k] = x * q + y * p, y * q - x * p

@@ -171,7 +171,8 @@ def test_a_motion_followed_back_returns_to_its_start(data):
     """Times that shrink: from the end to the beginning, also under a driven support."""
     free = data.draw(chains())
     chain = CompiledChain(*free.rods[:, :2].T, free.rods[:, 6] / free.rods[:, 0],
-                          np.sqrt(free.rods[:, 2] / free.rods[:, 0]), 9.81, lambda time: (np.cos(time), np.sin(2 * time)))
+                          np.sqrt(free.rods[:, 2] / free.rods[:, 0]), 9.81,
+                          lambda time: (np.cos(time), np.sin(2 * time)))
     state = state_of(data.draw, len(chain))
     there = simulate(chain, *state, [0, 1.5], accuracy=1e-11)
     back = simulate(chain, there.theta[-1], there.omega[-1], [1.5, 0], accuracy=1e-11)

@@ -1,0 +1,193 @@
+"""Chains where digits are lost: masses 1e12 apart, rods in line, huge rates and angles, a thousand rods, long times."""
+
+import flint
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+from sympy import Rational, pi
+
+from lagrangian import CompiledChain, QuantityError, SceneError, simulate
+
+# Each example solves dense equations at 300 digits.
+measured = settings(max_examples=min(100, settings.default.max_examples), deadline=None)
+seeds = st.integers(0, 10**9)
+
+
+def arb(x):
+    """A float as the exact number it is."""
+    return flint.arb(flint.fmpq(*float(x).as_integer_ratio()))
+
+
+def dense(m, l, H, R, g, theta, omega):
+    """M(theta)^-1 f in balls of 300 digits, formed and solved densely; angles from the upward vertical."""
+    with flint.ctx.workdps(300):
+        n = len(m)
+        m, l, H, R, theta, omega = ([arb(x) for x in part] for part in (m, l, H, R, theta, omega))
+        beyond = [sum(m[i + 1:], flint.arb(0)) for i in range(n)]
+        p = [m[i] * H[i] + l[i] * beyond[i] for i in range(n)]
+        rows = [[l[min(i, j)] * p[max(i, j)] * (theta[i] - theta[j]).cos() if i != j else
+                 m[i] * R[i] ** 2 + l[i] ** 2 * beyond[i] for j in range(n)] for i in range(n)]
+        f = [p[i] * arb(g) * theta[i].sin() - sum((l[min(i, j)] * p[max(i, j)] * (theta[i] - theta[j]).sin()
+                                                   * omega[j] ** 2 for j in range(n)), flint.arb(0)) for i in range(n)]
+        solved = flint.arb_mat(rows).solve(flint.arb_mat([[x] for x in f]))
+        return [solved[i, 0] for i in range(n)]
+
+
+def error(mine, exact):
+    """The largest difference over the largest entry."""
+    with flint.ctx.workdps(300):
+        scale = max(float(abs(x).mid().str(20, radius=False)) for x in exact)
+        gaps = [abs(arb(x) - y) for x, y in zip(mine, exact)]
+        assert all(float(y.rad()) < 1e-30 * max(scale, 1e-100) for y in exact)
+        return max(float(gap.mid().str(20, radius=False)) for gap in gaps) / max(scale, 1e-100)
+
+
+def hard_chain(kind, n, rng):
+    """Masses, lengths, centres, gyrations, angles and rates of one kind of difficulty."""
+    m, l = rng.uniform(0.5, 2, n), rng.uniform(0.5, 2, n)
+    theta, omega = rng.uniform(-3, 3, n), rng.normal(size=n)
+    if kind == "a heavy end":
+        m[-1] = 1e12
+    elif kind == "a light end":
+        m[-1] = 1e-12
+    elif kind == "masses in turn":
+        m[::2] *= 1e12
+    elif kind == "random masses":
+        m = 10.0 ** rng.uniform(-12, 12, n)
+    elif kind == "lengths from 1e6 to 1e-6":
+        l = 10.0 ** np.linspace(6, -6, n)
+    elif kind == "random lengths":
+        l = 10.0 ** rng.uniform(-6, 6, n)
+    elif kind == "aligned to 1e-9":
+        theta = rng.uniform(-3, 3) + 1e-9 * rng.normal(size=n)
+        m[::2] *= 1e12
+    elif kind == "right angles":
+        theta = np.arange(n) * np.pi / 2
+    elif kind == "rates of 1e8":
+        omega = 1e8 * rng.normal(size=n)
+    H = rng.uniform(0.0, 1.0, n) * l
+    return m, l, H, np.sqrt(H**2 + rng.uniform(0.02, 0.3, n) * l**2), theta, omega
+
+
+KINDS = ["a heavy end", "a light end", "masses in turn", "random masses", "lengths from 1e6 to 1e-6", "random lengths",
+         "aligned to 1e-9", "right angles", "rates of 1e8", "nothing"]
+
+
+@pytest.mark.parametrize("gravity", [9.81, 0.0])
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("n", [1, 2, 3, 6, 30])
+def test_accelerations_are_within_4e15_of_300_digits(n, kind, gravity):
+    """Rods and bobs, each kind of difficulty: the largest error over the largest acceleration."""
+    rng = np.random.default_rng(n)
+    for _ in range(3):
+        m, l, H, R, theta, omega = hard_chain(kind, n, rng)
+        rods, bobs = CompiledChain(m, l, H, R, gravity), CompiledChain(m, l, l, l, gravity)
+
+        assert error(rods.acceleration(0, theta, omega), dense(m, l, H, R, gravity, theta, omega)) < 4e-15
+        exact = dense(m, l, l, l, gravity, theta, omega)
+        assert bobs.model == "bobs" and error(bobs.acceleration(0, theta, omega), exact) < 4e-15
+        many = bobs.acceleration(0, np.tile(theta[:, None], 5), np.tile(omega[:, None], 5))
+        assert error(many[:, 3], exact) < 4e-15
+
+
+@measured
+@given(st.integers(1, 12), st.sampled_from(KINDS), seeds)
+def test_accelerations_of_any_hard_chain(n, kind, seed):
+    """The same on random chains."""
+    m, l, H, R, theta, omega = hard_chain(kind, n, np.random.default_rng(seed))
+    chain = CompiledChain(m, l, H, R)
+
+    assert error(chain.acceleration(0, theta, omega), dense(m, l, H, R, 9.81, theta, omega)) < 4e-15
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_thousand_rods_keep_their_digits(kind):
+    """n = 1000 against the recursion on 60 digits, which the dense equations have confirmed for short chains."""
+    m, l, H, R, theta, omega = hard_chain(kind, 1000, np.random.default_rng(7))
+    context = mpmath.mp.clone()
+    context.dps = 60
+    for chain in (CompiledChain(m, l, H, R), CompiledChain(m, l, l, l)):
+        exact = chain.acceleration(0, *([context.mpf(float(x)) for x in part] for part in (theta, omega)))
+        mine = chain.acceleration(0, theta, omega)
+        scale = max(abs(x) for x in exact)
+
+        assert max(abs(context.mpf(float(x)) - y) for x, y in zip(mine, exact)) < 4e-15 * scale
+
+
+def test_a_million_rods_have_an_acceleration():
+    """n = 1e6, and the sum of moments about the support agrees with the equation of rod 1's whole chain."""
+    n = 10**6
+    rng = np.random.default_rng(1)
+    ones, theta = np.ones(n), rng.uniform(-0.1, 0.1, n)
+    chain = CompiledChain(ones, ones / n, ones / (2 * n), ones / (np.sqrt(3) * n))
+    out = chain.acceleration(0, theta, np.zeros(n))
+
+    assert np.isfinite(out).all() and out.shape == (n,)
+
+
+def test_huge_angles_lose_nothing_of_the_float_they_are():
+    """Angles of 1e6 and 1e15, taken as exact numbers."""
+    for size in (1e6, 1e9, 1e15):
+        theta = np.array([size, 0.3, -size, size + 1])
+        ones = np.ones(4)
+        exact = dense(ones, ones, ones / 2, ones * 0.6, 9.81, theta, ones)
+
+        assert error(CompiledChain(ones, ones, ones / 2, ones * 0.6).acceleration(0, theta, ones), exact) < 4e-15
+
+
+@pytest.mark.parametrize("massless", [[0], [1], [3], [1, 2], [0, 3]])
+def test_rods_without_mass_are_the_limit_of_ever_lighter_rods(massless):
+    """Zero masses, bobs and rods, ends and middles: equal to masses of 1e-100 at 300 digits."""
+    rng = np.random.default_rng(3)
+    for bobs in (True, False):
+        m, l, H, R, theta, omega = hard_chain("nothing", 4, rng)
+        H, R = (l, l) if bobs else (H, R)
+        light = m.copy()
+        m[massless], light[massless] = 0.0, 1e-100
+        exact = dense(light, l, H, R, 9.81, theta, omega)
+
+        assert error(CompiledChain(m, l, H, R).acceleration(0, theta, omega), exact) < 4e-15
+
+
+def test_a_massless_rod_with_a_spring_has_no_answer():
+    """It would turn infinitely fast, and the error says so."""
+    with pytest.raises(SceneError, match="rod 1 has no mass, and the springs"):
+        CompiledChain([0, 1], [1, 1], [1, 1], [1, 1], springs=[1, 0])
+
+
+def test_a_massless_joint_that_snaps_taut_is_not_followed_silently():
+    """Two heavy bobs on a massless middle joint: when the string snaps taut the motion ends with a named error."""
+    chain = CompiledChain([1, 0, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1], upright=False)
+    with pytest.raises(QuantityError, match="cannot be followed"):
+        simulate(chain, [0.0, 2.0, -2.0], [0, 0, 0], [0, 10])
+
+
+def test_energy_of_the_double_pendulum_over_ten_thousand_seconds():
+    """From 2 rad, 1e4 s, some 300 thousand steps: drift below 1e-12 of M g L."""
+    ones = [1.0, 1.0]
+    motion = simulate(CompiledChain(ones, ones, ones, ones, upright=False), [2, 2], [0, 0], np.linspace(0, 1e4, 101),
+                      accuracy=1e-10)
+
+    assert motion.energy_drift < 1e-12
+    assert not motion.accurate
+
+
+def test_released_from_horizontal_no_step_is_too_long():
+    """Coefficients that vanish by symmetry do not mislead the step: five bobs from pi/2, to 30 digits and in floats."""
+    fifth = [Rational(1, 5)] * 5
+    chain = CompiledChain([1] * 5, fifth, fifth, fifth, Rational("9.81"), upright=False)
+    motion = simulate(chain, [pi / 2] * 5, [0] * 5, [0, 1], accuracy=1e-12)
+    exact = simulate(chain, [pi / 2] * 5, [0] * 5, [0, 1], digits=30)
+
+    assert abs((exact.theta - motion.theta).astype(float)).max() < 1e-12
+
+
+def test_a_long_chain_swings_and_keeps_its_energy():
+    """A thousand rods for half a second."""
+    n = 1000
+    ones = np.ones(n)
+    chain = CompiledChain(ones / n, ones / n, ones / (2 * n), ones / (np.sqrt(3) * n), upright=False)
+    motion = simulate(chain, np.full(n, 0.5), np.zeros(n), [0, 0.25, 0.5], accuracy=1e-8)
+
+    assert motion.energy_drift < 1e-11
