@@ -35,7 +35,7 @@ from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import Collapsed, vectorise
 from fastpicard.writing import write
 
-_BOUND_BITS = 256  # the precision of P and T where a bound is asked for
+_BOUND_BITS = 8192  # the precision of P and T where a bound is asked for
 
 
 class FloquetMatrix:

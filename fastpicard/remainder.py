@@ -32,59 +32,80 @@ from flint import arb, arb_mat, arb_poly, ctx
 from fastpicard.harmonics import Harmonics
 
 BITS = 64  # for bounds, whose own digits matter little
+MOST_INCREMENTS, LEVELS = 300, 6  # how far to go for a sharp bound
 
 
 def a_priori(P: Harmonics, period: Any, n: int) -> Any:
     """``sum over k > n of (Pbar T)**k / k!`` as an ``arb_mat``, entries rounded up."""
     with ctx.workprec(BITS):
-        X = P.bound * abs(period)
-        norm = max(float(sum((X[i, j] for j in range(P.size)), arb(0)).upper()) for i in range(P.size))
-        # From `last` on the norm of every term is at most half of that before it; there a common tail is added.
-        last = max(n + 1, math.ceil(2 * norm)) + BITS
-        term, total = arb_mat(P.size, P.size, _identity(P.size)), arb_mat(P.size, P.size)
+        X, peak = P.bound * abs(period), _peak(P, period)
+        if peak > 2 * n + MOST_INCREMENTS:  # the terms up to n are nothing beside the largest ones
+            return _upper(X.exp())
+        # From `last` on two orders more make a term at least four times smaller in norm, as |X X| < k k / 4:
+        # all that follow are less than half of the last two.
+        last = max(n + 1, math.ceil(2 * peak)) + BITS
+        before, term, total = arb_mat(P.size, P.size), arb_mat(P.size, P.size, _identity(P.size)), arb_mat(P.size, P.size)
         for k in range(1, last + 1):
-            term = term * X / k
+            before, term = term, term * X / k
             if k > n:
                 total = total + term
         if _is_zero(term):
             return total
-        tail = largest_row_sum(term)
+        tail = (largest_row_sum(before) + largest_row_sum(term)) / 2
         return arb_mat(P.size, P.size, [(x + tail).upper() for x in total.entries()])
 
 
 def a_posteriori(P: Harmonics, period: Any, n: int) -> Any:
     """The bound from increments computed at these parameters, as an ``arb_mat`` of upper bounds.
 
-    While the terms of the a-priori sum still grow at ``n`` nothing is gained, and that sum is the bound.
+    If increments grow up to an order beyond ``MOST_INCREMENTS``, the a-priori sum is the bound.
     """
     first = a_priori(P, period, n)
-    if not _falling(P, period, n):
+    if _is_zero(first) or _peak(P, period) > max(n, MOST_INCREMENTS):
         return first
-    rest, total = first, arb_mat(P.size, P.size)
-    source = increments_at_end(P, period, n)
-    for _ in range(n + 1):
-        next(source)
-    k = n
-    while 100 * largest_row_sum(rest) > largest_row_sum(_upper(total)) and not _is_zero(rest):
-        k += 1
-        with ctx.workprec(BITS):
-            total = total + next(source)
-        rest = a_priori(P, period, k)
+    for level in range(0, LEVELS, 2):
+        rest, total, k = first, arb_mat(P.size, P.size), n
+        source = increments_at_end(P, period, n, level)
+        for _ in range(n + 1):
+            next(source)
+        while 100 * largest_row_sum(rest) > largest_row_sum(_upper(total)) and not _is_zero(rest):
+            k += 1
+            with ctx.workprec(BITS):
+                total = total + next(source)
+            rest = a_priori(P, period, k)
+        if _is_sharp(total) or P.is_wide:
+            break
     return _least(_upper(total) + rest, first)
+
+
+def _is_sharp(total: Any) -> bool:
+    """Whether it is not the radii of the balls that make the sum what it is."""
+    radii = arb_mat(total.nrows(), total.ncols(), [x.rad() for x in total.entries()])
+    return bool(20 * largest_row_sum(radii) <= largest_row_sum(_upper(total)))
+
+
+def _peak(P: Harmonics, period: Any) -> float:
+    """About the order up to which the terms of the a-priori sum grow."""
+    with ctx.workprec(BITS):
+        X = P.bound * abs(period)
+        return math.sqrt(float(largest_row_sum(X * X)))
 
 
 def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
     """The smallest ``n`` from which on the bound meets ``tol``: largest row sum."""
     last = _a_priori_order(P, period, tol / 100)
     rest = a_priori(P, period, last)
-    source = increments_at_end(P, period, last)
-    increments = [next(source) for _ in range(last + 1)]
-    total, n = arb_mat(P.size, P.size), last
-    while n > 0:
-        total = total + increments[n]
-        if not largest_row_sum(_least(_upper(total) + rest, a_priori(P, period, n - 1))) <= tol:
+    for level in range(0, LEVELS, 2):
+        source = increments_at_end(P, period, last, level)
+        increments = [next(source) for _ in range(last + 1)]
+        total, n = arb_mat(P.size, P.size), last
+        while n > 0:
+            total = total + increments[n]
+            if not largest_row_sum(_least(_upper(total) + rest, a_priori(P, period, n - 1))) <= tol:
+                break
+            n -= 1
+        if n == 0 or _is_sharp(total) or P.is_wide:
             break
-        n -= 1
     return n
 
 
@@ -98,13 +119,6 @@ def _a_priori_order(P: Harmonics, period: Any, tol: Any) -> int:
         middle = (low + high) // 2
         low, high = (low, middle) if largest_row_sum(a_priori(P, period, middle)) <= tol else (middle, high)
     return high
-
-
-def _falling(P: Harmonics, period: Any, n: int) -> bool:
-    with ctx.workprec(BITS):
-        X = P.bound * abs(period)
-        squared, power = X * X, X ** n
-        return bool(largest_row_sum(power * squared) < (n + 1) * (n + 2) * largest_row_sum(power))
 
 
 def _upper(matrix: Any) -> Any:
@@ -132,10 +146,10 @@ def largest_row_sum(matrix: Any) -> Any:
 # -- increments as Taylor models in time -------------------------------------
 
 
-def increments_at_end(P: Harmonics, period: Any, n: int) -> Iterator[Any]:
-    """``I_0(T), I_1(T), ...`` as ``arb_mat``; orders up to some hundred keep many digits."""
+def increments_at_end(P: Harmonics, period: Any, n: int, level: int = 0) -> Iterator[Any]:
+    """``I_0(T), I_1(T), ...`` as ``arb_mat``; orders around n keep many digits, more at a higher level."""
     pieces = max(8, n // 6, math.ceil(float((abs(period) * P.highest).upper()) / 2))
-    degree, bits = 36, 192
+    degree, bits = 36 + 20 * level, 192 << level
     size = P.size
     with ctx.workprec(bits):
         step = period / pieces
