@@ -290,11 +290,12 @@ def _monomial_of(parts: tuple[Any, ...]) -> Monomial:
 
 
 def _is_zero_to_sympy(terms: Polynomial) -> bool:
+    """Whether SymPy can show that functions of symbols cancel; what it cannot decide is not zero."""
     numerator = sympy.fraction(sympy.together(to_expression(terms)))[0].expand()
     if numerator == 0:
         return True
     symbols = sorted(numerator.free_symbols, key=str)
     if symbols and not numerator.is_polynomial(*symbols):
-        return bool(sympy.radsimp(numerator).expand() == 0)
+        return any(form.expand() == 0 for form in (sympy.radsimp(numerator), numerator.rewrite(sympy.exp)))
     coefficients = sympy.Poly(numerator, *symbols, domain="EX").coeffs() if symbols else [numerator]
     return all(bool(c.equals(0)) for c in coefficients)

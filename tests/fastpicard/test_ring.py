@@ -72,6 +72,10 @@ def test_the_reciprocal_of_nothing_does_not_exist():
         I**3 + I,
         sympy.cos(a) ** 2 + sympy.sin(a) ** 2 - 1,
         sympy.sin(2 * a) - 2 * sympy.sin(a) * sympy.cos(a),
+        sympy.cosh(a) ** 2 - sympy.sinh(a) ** 2 - 1,
+        sympy.log(6) - sympy.log(2) - sympy.log(3),
+        cbrt(2 + sqrt(5)) - (1 + sqrt(5)) / 2,
+        a / (b + cbrt(2)) * (b + cbrt(2)) / a - 1,
     ],
     ids=str,
 )
