@@ -133,7 +133,7 @@ class _NotAWave(Exception):
 
 def _add_term(term: Expr, t: Any, part: int, constant: list[Any], waves: dict[Any, list[Any]]) -> None:
     factor, rest = term.as_independent(t, as_Add=False)
-    if rest == 1:
+    if rest in (0, 1):
         constant[part] += factor
         return
     if isinstance(rest, Mul) or not isinstance(rest, (cos, sin)):

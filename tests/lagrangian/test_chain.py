@@ -222,6 +222,14 @@ def test_support_acceleration_is_a_pair_or_a_function_of_time():
     assert abs(mine - other).max() < 1e-14
 
 
+def test_waves_are_recognised():
+    """A support that moves in waves, in both directions or one, costs no power series in Python."""
+    for xi, eta in ((0, cos(3 * t)), (sin(2 * t + 1), 0), (3 * t**2 / 2, cos(t) * 2 - sin(t)), (0, 0)):
+        support = Scene([Rod.bob(1, 1)], Support(xi, eta), 1, t=t).compile().support
+
+        assert support.function is None and support.at_rest == (xi == eta == 0)
+
+
 def test_a_tension_free_fall_keeps_every_rod_from_turning():
     """Without gravity at the joint (eta'' = -g) a chain at rest stays at rest."""
     chain = CompiledChain([1, 2, 3], [1] * 3, [0.5] * 3, [0.6] * 3, 9.81, (0, -9.81))
