@@ -54,6 +54,7 @@ from fastpicard.ring import Monomial, expression_of, symbols_of
 Array = Any
 BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
 ALLOWED = 9 * UNIT  # of the largest entry; what is missing to 10 is left to the roundings of the bounds
+REMEMBERED = 6  # precisions whose coefficients are kept
 FLOAT, PAIR, BALL = 0, 1, 2
 
 
@@ -126,12 +127,14 @@ class Collapsed:
 
     def coefficients(self) -> list[list[Any]]:
         """The coefficients of every constant, balls at the working precision."""
-        if ctx.prec not in self._balls:
-            if len(self._balls) > 3:
-                del self._balls[min(self._balls)]
+        found = self._balls.pop(ctx.prec, None)
+        if found is None:
             constant = Point(self.time, {})
-            self._balls[ctx.prec] = [[constant(modes) for modes in part] for part in self._inner]
-        return self._balls[ctx.prec]
+            found = [[constant(modes) for modes in part] for part in self._inner]
+        self._balls[ctx.prec] = found  # the last used comes last
+        if len(self._balls) > REMEMBERED:
+            del self._balls[next(iter(self._balls))]
+        return found
 
     def balls(self, values: dict[Symbol, Any]) -> list[Any]:
         """The constants at a point, at the working precision."""
