@@ -18,7 +18,7 @@ import numpy as np
 from sympy import Add, Matrix, Rational, cos, lambdify, pi, symbols
 
 from fastpicard import FloquetMatrix, FundamentalMatrix, PoissonSeries
-from fastpicard.vectorise import Collapsed, Evaluator
+from fastpicard.vectorise import Collapsed, Evaluator, values_of
 
 a, b, t = symbols("a b t")
 P = Matrix([[0, 1], [-a - b * cos(t), 0]])
@@ -103,7 +103,8 @@ def cells(expression: object, x: str, y: str) -> list[str]:
     evaluator = Evaluator(constants, (a, b))
     columns = [np.array([float(x)]), np.array([float(y)])]
     (polynomial,), given = evaluator.polynomials, dict(zip((a, b), columns, strict=True))
-    variables = [v.values(given, constants.time).scaled(s) for v, s in zip(constants.variables, evaluator.scales, strict=True)]
+    unscaled = values_of(constants.variables, given, constants.time)
+    variables = [v.scaled(s) for v, s in zip(unscaled, evaluator.scales, strict=True)]
     with np.errstate(all="ignore"):
         plain, (r, e) = polynomial.floats(variables, 1), polynomial.pairs(variables, 1)
         values, bounds, route = evaluator(columns)

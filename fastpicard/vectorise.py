@@ -88,15 +88,23 @@ class Variable:
             return expression_of(self.power[0][0]), int(self.power[0][1])
         return None, 0
 
-    def values(self, columns: dict[Symbol, Array], time: Any) -> doubledouble.Variable:
-        """Its values for columns of parameters."""
-        symbol, unit = self.parameter
+
+def values_of(variables: list[Variable], columns: dict[Symbol, Array], time: Any) -> list[doubledouble.Variable]:
+    """The values of variables for columns of parameters; those that need balls once for every different point."""
+    found: dict[Variable, doubledouble.Variable] = {}
+    groups: dict[frozenset[Symbol], list[Variable]] = {}
+    for variable in variables:
+        symbol, unit = variable.parameter
         if symbol is None:
-            return _by_balls(self, columns, time)
-        x = columns[symbol]
-        if unit == 1:
-            return doubledouble.Variable(x, None)
-        return doubledouble.Variable(*(doubledouble.square(x) if unit == 2 else doubledouble.reciprocal(x)))
+            groups.setdefault(frozenset(variable.symbols), []).append(variable)
+        elif unit == 1:
+            found[variable] = doubledouble.Variable(columns[symbol], None)
+        else:
+            make = doubledouble.square if unit == 2 else doubledouble.reciprocal
+            found[variable] = doubledouble.Variable(*make(columns[symbol]))
+    for group in groups.values():
+        found.update(zip(group, _by_balls(group, columns, time), strict=True))
+    return [found[variable] for variable in variables]
 
 
 class Collapsed:
@@ -279,8 +287,8 @@ class Evaluator:
     def _block(self, columns: list[Array], values: Array, bounds: Array, route: Array) -> None:
         """Fill in what float64 and pairs can do for one block."""
         np, given = numpy(), dict(zip(self.names, columns, strict=True))
-        variables = [v.values(given, self.collapsed.time).scaled(s)
-                     for v, s in zip(self.collapsed.variables, self.scales, strict=True)]
+        values_here = values_of(self.collapsed.variables, given, self.collapsed.time)
+        variables = [v.scaled(s) for v, s in zip(values_here, self.scales, strict=True)]
         inside = np.ones(len(route), dtype=bool)
         for variable in variables:
             inside &= variable.inside(self.limit)
@@ -341,23 +349,29 @@ def _with_bound(x: Any) -> tuple[float, float]:
     return value, math.nextafter(to_number((x - arb(value)).abs_upper(), None), math.inf)
 
 
-def _by_balls(variable: Variable, columns: dict[Symbol, Array], time: Any) -> doubledouble.Variable:
-    """The values of a function of parameters as pairs, through balls: once for every different point."""
-    np, names = numpy(), sorted(variable.symbols, key=str)
+def _by_balls(variables: list[Variable], columns: dict[Symbol, Array], time: Any) -> list[doubledouble.Variable]:
+    """The values of functions of the same parameters as pairs, through balls."""
+    np, names = numpy(), sorted(variables[0].symbols, key=str)
     points, inverse = np.unique(np.stack([columns[s] for s in names]), axis=1, return_inverse=True)
-    pairs = np.array([_ball_pair(variable, dict(zip(names, x, strict=True)), time) for x in points.T]).reshape(-1, 2)
-    return doubledouble.Variable(*pairs[inverse.reshape(-1)].T)
+    pairs = np.array([_ball_pairs(variables, dict(zip(names, x, strict=True)), time) for x in points.T])
+    spread = pairs.reshape(-1, len(variables), 2)[inverse.reshape(-1)].transpose(1, 2, 0).copy()
+    return [doubledouble.Variable(high, low) for high, low in spread]
 
 
-def _ball_pair(variable: Variable, at: dict[Symbol, float], time: Any) -> tuple[float, float]:
-    """One value as a pair of floats right to ``2**-106``, or nan where there is none: a pole, or no digits at all."""
+def _ball_pairs(variables: list[Variable], at: dict[Symbol, float], time: Any) -> list[tuple[float, float]]:
+    """Values as pairs of floats right to ``2**-106``, or nan where there is none: a pole, or no digits at all."""
     if not all(map(math.isfinite, at.values())):
-        return math.nan, math.nan
-    exact = {s: fmpq(*map(int, float(x).as_integer_ratio())) for s, x in at.items()}
-    with ctx.workprec(192):
-        x = variable.ball(Point(time, exact))
-    high, low = _rounded(x, 0) if x.is_finite() else (math.nan, math.nan)
-    return (high, low) if x == 0 or high and x.rel_accuracy_bits() >= 110 else (math.nan, math.nan)
+        return [(math.nan, math.nan)] * len(variables)
+    with ctx.workprec(256):
+        point = Point(time, {s: fmpq(*map(int, float(x).as_integer_ratio())) for s, x in at.items()})
+        return [_ball_pair(variable.ball(point)) for variable in variables]
+
+
+def _ball_pair(x: Any) -> tuple[float, float]:
+    if x == 0:
+        return 0.0, 0.0
+    high = to_number(x, None) if x.is_finite() and x.rel_accuracy_bits() >= 110 else 0.0
+    return (high, to_number(x - arb(high), None)) if high and math.isfinite(high) else (math.nan, math.nan)
 
 
 # -- functions -----------------------------------------------------------------

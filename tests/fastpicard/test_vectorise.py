@@ -144,6 +144,20 @@ def test_balls_go_on_until_the_bound_is_there():
     assert value == pytest.approx(2**0.5 * 2.0**-90, rel=1e-15) and bound <= np.spacing(value)
 
 
+def test_coefficients_are_kept_for_the_precisions_last_used():
+    """After many precisions a point in balls finds its coefficients again, and few are held."""
+    constants = collapsed(sympy.expand(sqrt(2) * (a - b) ** 3))
+    evaluator, at = Evaluator(constants, (a, b)), [np.array([1 + 2.0**-30]), np.array([1.0])]
+    expected = evaluator(at)[0]
+    for digits in range(20, 200, 20):
+        constants.at({a: 2, b: 1}, digits)
+
+    assert evaluator(at)[0] == expected
+    kept = {precision: id(rows) for precision, rows in constants._balls.items()}
+    assert evaluator(at)[0] == expected and len(kept) <= 6
+    assert {precision: id(rows) for precision, rows in constants._balls.items()} == kept
+
+
 def test_only_the_largest_entry_needs_its_last_digits():
     """1 and a vanishing sum are floats together; the sum alone is not."""
     at = [np.array([1.0]), np.array([1 + 2.0**-50])]
