@@ -165,7 +165,7 @@ def test_an_iterate_of_order_24_at_any_time(time):
 
 
 def test_order_120_with_numbers_for_parameters_at_any_time():
-    """A column, against SymPy's expressions in mpmath; at t = 1/2 the terms exceed the sum by 1e70."""
+    """A column, against SymPy's expressions in mpmath; at t = 1/2 the terms exceed the sum by 1e65."""
     X = FundamentalMatrix(MATHIEU.subs({a: Rational(5, 2), b: Rational(3, 2)}), t, 120)
     column = [X[0, 1].as_expr(), X[1, 1].as_expr()]
 
