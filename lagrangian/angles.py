@@ -20,7 +20,7 @@ import numpy as np
 
 from .machine import inlined
 
-__all__ = ["LARGEST", "difference", "sines"]
+__all__ = ["LARGEST", "difference", "product", "sines", "sines_of_large_joints"]
 
 # pi/2 = HALF_1 + HALF_2 + HALF_3 + O(1e-36); the first two have 33 bits.
 HALF_1 = float.fromhex("0x1.921fb54400000p+0")
@@ -75,16 +75,8 @@ def sines(d: Any, e: Any) -> tuple[Any, Any]:
     return (-s if turned or quarter == -1.0 else s), (-c if turned or quarter == 1.0 else c)
 
 
-def sines_of_joints(theta: Any, s: Any, c: Any) -> None:
-    """Write sine and cosine of ``theta_k - theta_(k-1)``, and of ``theta_1`` first; all three of shape (n,)."""
-    s[0], c[0] = sines(theta[0], 0.0)
-    for k in range(1, theta.shape[0]):
-        d, e = difference(theta[k], theta[k - 1])
-        s[k], c[k] = sines(d, e)
-
-
 def sines_of_large_joints(theta: Any, s: Any, c: Any) -> None:
-    """The same for angles of any size, or arrays of angles of shape (n, ...), with the library's functions."""
+    """Write sine and cosine of ``theta_k - theta_(k-1)`` (``theta_1`` first), angles of any size, shape (n, ...)."""
     s[0], c[0] = np.sin(theta[0]), np.cos(theta[0])
     for k in range(1, theta.shape[0]):
         d, e = difference(theta[k], theta[k - 1])

@@ -23,7 +23,7 @@ LANES = 32
 def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:
     """Write ``theta''`` of all chains to ``out``; float64 only.
 
-    Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 5 * LANES).  All chains are
+    Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 6 * LANES).  All chains are
     on one support, with acceleration ``(ax, ay)``.  Angles at most :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
@@ -54,6 +54,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                                        held[6 * LANES + j], held[7 * LANES + j], rate[j] * rate[j])
                 o[j] = J * r
                 o[LANES + j] = l * l * Pun * r
+                o[5 * LANES + j] = (mH + l * Pnn) * r
                 if tau is None:
                     o[2 * LANES + j] = l * l * qn * r
                 else:
@@ -78,6 +79,6 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 s, c, tu, tn = o[3 * LANES + j], o[4 * LANES + j], held[j], held[LANES + j]
                 au, an = tu * c + tn * s, tn * c - tu * s
                 tu = au - l * rate[j] * rate[j]
-                tn = o[j] * an - o[2 * LANES + j] - o[LANES + j] * tu
-                result[j] = (tn - an) * per_length
+                tn = o[j] * an - (o[2 * LANES + j] + o[LANES + j] * tu)
+                result[j] = -(o[5 * LANES + j] * an + (o[2 * LANES + j] + o[LANES + j] * tu) * per_length)
                 held[j], held[LANES + j] = tu, tn

@@ -39,6 +39,7 @@ def reordered(function: AnyFunction) -> AnyFunction:
     return inlined(function)
 
 
+@cache
 def has_numba() -> bool:
     """Whether numba is installed; without it everything runs, some hundred times slower."""
     return find_spec("numba") is not None

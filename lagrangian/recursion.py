@@ -20,7 +20,8 @@ and then turns by ``delta = theta_k - theta_(k-1)``, s and c its sine and cosine
 articulated-body recursion does not, is what keeps the digits: masses 1e12 apart lose none.  On the way back,
 from the acceleration ``alpha`` of the near end,
 
-    tu = alpha_u - l z,   tn = [J alpha_n + l tau - l**2 (qn + Pun tu)]/D,   theta'' = (tn - alpha_n)/l.
+    tu = alpha_u - l z,   tn = [J alpha_n + l tau - l**2 (qn + Pun tu)]/D,
+    theta'' = (tn - alpha_n)/l = [tau - (m H + l Pnn) alpha_n - l (qn + Pun tu)]/D.
 
 **Bobs** need less.  The tensions T solve the notes' tridiagonal system ``Re(Z**-1) T = L theta'**2 - alpha_u e_1``,
 whose pivots are ``(1 + rho_k)/m_k`` without subtraction, and
@@ -89,7 +90,7 @@ def turned_force(s: Any, c: Any, qu: Any, qn: Any, ku: Any, kn: Any) -> Any:
 def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:
     """Write ``theta''`` of physical rods to ``out``.
 
-    Shapes: rods (n, 8), rows ``m, l, I, Ic, J, It, m H, m (l - H)``; z, s, c, out (n,); work (n, 3); tau (n,) or
+    Shapes: rods (n, 8), rows ``m, l, I, Ic, J, It, m H, m (l - H)``; z, s, c, out (n,); work (n, 4); tau (n,) or
     None, the torque on each rod; ``(ax, ay)`` the acceleration of the support, with g added to ay.
     """
     n = rods.shape[0]
@@ -101,6 +102,7 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
         r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
         work[k, 0] = J * r
         work[k, 1] = l * l * Pun * r
+        work[k, 3] = (mH + l * Pnn) * r
         f0, f1, f2, f3 = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, qu, qn, ku, kn, z[k])
         if tau is None:
             work[k, 2] = l * l * qn * r
@@ -118,7 +120,7 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
         au, an = tu * c[k] + tn * s[k], tn * c[k] - tu * s[k]
         tu = au - l * z[k]
         tn = work[k, 0] * an - work[k, 2] - work[k, 1] * tu
-        out[k] = (tn - an) / l
+        out[k] = -(work[k, 3] * an + (work[k, 2] + work[k, 1] * tu) / l)
 
 
 def accelerate_bobs(bobs: Any, z: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:

@@ -57,7 +57,7 @@ def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
     for q, cx, sx, cy, sy in waves:
         cosine, sine = heyoka.cos(q * heyoka.time), heyoka.sin(q * heyoka.time)
         ax, ay = ax + cx * cosine + sx * sine, ay + cy * cosine + sy * sine
-    out, work = np.empty(n, dtype=object), np.empty((n, 3), dtype=object)
+    out, work = np.empty(n, dtype=object), np.empty((n, 4), dtype=object)
     accelerate_rods(chain.rods, omega * omega, chain.torques(theta, omega), s, c, ax, chain.up * ay, work, out)
     return [*zip(theta, omega, strict=True), *zip(omega, out, strict=True)]
 

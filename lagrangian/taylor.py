@@ -59,7 +59,7 @@ def factor(rods: Any, s: Any, c: Any, one: Any, factors: Any) -> None:
         f[6], f[7], f[8], f[9] = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, none, none, none, none,
                                        one)
         f[10], f[11], f[12], f[13] = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
-        f[14], f[15], f[16], f[17] = l * r, Puu, Pun, one / l
+        f[14], f[15], f[16], f[17] = l * r, Puu, Pun, r
         f[18], f[19], f[20], f[21], f[22] = s[k], c[k], l, I, mH
         Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
         Delta = det
@@ -129,7 +129,7 @@ def expand(factors: Any, damping: Any, springs: Any, delta: Any, omega: Any, ax:
             au, an = tu * f[19] + tn * f[18], tn * f[19] - tu * f[18]
             tu = au - f[20] * z
             tn = f[4] * an + f[14] * t - f[2] * (h[2] + f[16] * tu)
-            beta = (tn - an) * f[17]
+            beta = f[17] * t - f[11] * an - f[14] * (h[2] + f[16] * tu)
             rate = beta * per - X
             x[2, order - 1 - j] = rate
             x[0, j + 2], x[1, j + 2] = -h[5] * next_per, (X + rate) * next_per

@@ -1,0 +1,62 @@
+"""One chain in float64 from angles to accelerations, in one call of machine code.
+
+For short chains the call from Python costs more than the arithmetic, so that sines, recursion and the check that
+every result is finite are one function, and none of it allocates in Python.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .angles import LARGEST, difference, sines
+from .recursion import accelerate_bobs, accelerate_rods
+
+__all__ = ["single_bobs", "single_rods"]
+
+
+def joint_sines(theta: Any, omega: Any, s: Any, c: Any, z: Any) -> None:
+    """Sine and cosine of every joint angle, of any size, and the squares of the rates; all shapes (n,)."""
+    n = theta.shape[0]
+    largest = 0.0
+    for k in range(n):
+        largest = max(largest, abs(theta[k]))
+        z[k] = omega[k] * omega[k]
+    if largest < 0.5 * LARGEST:
+        s[0], c[0] = sines(theta[0], 0.0)
+        for k in range(1, n):
+            d, e = difference(theta[k], theta[k - 1])
+            s[k], c[k] = sines(d, e)
+    else:
+        s[0], c[0] = np.sin(theta[0]), np.cos(theta[0])
+        for k in range(1, n):
+            d, e = difference(theta[k], theta[k - 1])
+            x, y, p, q = np.sin(d), np.cos(d), np.sin(e), np.cos(e)
+            s[k], c[k] = x * q + y * p, y * q - x * p
+
+
+def finite(out: Any) -> bool:
+    """Whether every number is."""
+    total = 0.0
+    for k in range(out.shape[0]):
+        total += 0.0 * out[k]
+    return total == 0.0
+
+
+def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, out: Any) -> bool:
+    """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite.  ``tau`` is (n,) or None."""
+    n = theta.shape[0]
+    s, c, z, work = np.empty(n), np.empty(n), np.empty(n), np.empty((n, 4))
+    joint_sines(theta, omega, s, c, z)
+    accelerate_rods(rods, z, tau, s, c, ax, ay, work, out)
+    return finite(out)
+
+
+def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> bool:
+    """The same for bobs."""
+    n = theta.shape[0]
+    s, c, z, work = np.empty(n), np.empty(n), np.empty(n), np.empty((n, 2))
+    joint_sines(theta, omega, s, c, z)
+    accelerate_bobs(bobs, z, s, c, ax, ay, work, out)
+    return finite(out)
