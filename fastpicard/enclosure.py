@@ -34,7 +34,8 @@ MOST_PIECES, MOST_ORDERS = 1 << 20, 1 << 14
 Rows = list[list[Any]]
 
 
-def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: int, strict: bool = True) -> Any:
+def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: int, is_box: bool = False,
+                strict: bool = True) -> Any:
     """An ``arb_mat`` that contains ``Phi(T)``, with the digits asked for.
 
     Parameters
@@ -42,7 +43,8 @@ def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: 
     build : function without arguments that gives ``P`` and ``T`` in balls of the working precision
     turns : int     ``T/turns`` is a period too
     digits : int    every radius is at most ``10**-digits`` of its entry, or ``10**-2digits`` of the largest
-    strict : bool   False to take what balls with a radius allow
+    is_box : bool   whether parameters are balls with a radius, which may not allow the digits
+    strict : bool   False to take what they allow
 
     Raises
     ------
@@ -62,20 +64,20 @@ def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: 
         except ZeroDivisionError:  # too wide to be known as invertible
             return transition(P, arb(0), part) ** turns
 
-    return to_digits(once, digits, strict)
+    return to_digits(once, digits, is_box, strict)
 
 
-def to_digits(compute: Callable[[], Any], digits: int, strict: bool = True) -> Any:
+def to_digits(compute: Callable[[], Any], digits: int, is_box: bool = False, strict: bool = True) -> Any:
     """A matrix of balls, computed with more and more bits until it has the digits asked for."""
     wanted = dps_to_prec(digits)
-    bits, gained = wanted + 32, math.inf
+    bits, before = wanted + 32, None
     while True:
         with ctx.workprec(bits):
             found = compute()
             missing = shortfall(found, wanted)
         if missing <= 0:
             return found
-        if missing > gained - 8:
+        if is_box and before is not None and not missing < before - 8:
             if not strict:
                 return found
             raise BadInputError(f"the digits asked for cannot be had: {digits} were asked for, and {bits} bits leave "
@@ -84,7 +86,7 @@ def to_digits(compute: Callable[[], Any], digits: int, strict: bool = True) -> A
         if bits > 64 * wanted + 100_000:
             raise BadInputError(f"the matrix is not enclosed with {bits} bits.  Its entries are beyond reach: "
                                 "take a smaller period or smaller coefficients.")
-        gained = missing
+        before = missing
         bits += int(missing) + 16 if math.isfinite(missing) else bits
 
 
@@ -122,9 +124,9 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     """An ``arb_mat`` that contains ``Phi(end, start)``, at the working precision."""
     length = end - start
     scales = _balance(P)
-    speed = _speed(P, scales) * _upper(abs(length))
-    stride = 0.25 if P.is_wide else 5 + ctx.prec / 50  # more digits, longer strides: found by trial
-    pieces = max(1, math.ceil(speed / stride))
+    speed, turn = _speed(P, scales) * _upper(abs(length)), P.highest * _upper(abs(length))
+    # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones.
+    pieces = max(1, math.ceil(speed / 0.25) if P.is_wide else math.ceil(max(speed / (5 + ctx.prec / 50), turn / 3.2)))
     if pieces > MOST_PIECES:
         raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} takes more than {MOST_PIECES} steps: the "
                             f"coefficients reach {_upper(P.bound.det()):.3g}.  Take a smaller period.")
@@ -143,10 +145,10 @@ def _upper(x: Any) -> float:
 
 
 def _speed(P: Harmonics, scales: list[int]) -> float:
-    """The norm of the balanced ``P``, or its highest frequency."""
+    """The norm of the balanced ``P``."""
     bound = P.bound
     rows = [sum(_upper(bound[i, j]) * 2.0 ** (scales[j] - scales[i]) for j in range(P.size)) for i in range(P.size)]
-    return max(*rows, P.highest)
+    return max(rows)
 
 
 def _balance(P: Harmonics) -> list[int]:

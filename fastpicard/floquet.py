@@ -30,7 +30,7 @@ from fastpicard.picard import Increments, check_order, first_increments, identit
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, read_constant
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
 from fastpicard.ring import ONE, Polynomial, generator, multiply, normal, symbols_of, to_expression
-from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_form
+from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_forms
 from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import Collapsed, vectorise
 from fastpicard.writing import write
@@ -289,7 +289,7 @@ class FloquetMatrix:
         wanted = check_digits(digits)
         if wanted is None:
             raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
-        return over_period(lambda: self._at(exact), self._turns, wanted)
+        return over_period(lambda: self._at(exact), self._turns, wanted, is_box(exact))
 
     @cached_property
     def _turns(self) -> int:
@@ -297,10 +297,10 @@ class FloquetMatrix:
         frequencies = {angle[0] for row in self._P.rows for modes in row for _, angle, _ in modes if angle[0]}
         return max(1, gcd(*(int(_turns(q, self._length)[ONE].p) for q in frequencies)))
 
-    def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, Any]:
-        """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic form if there is one."""
-        form = symplectic_form(self._P, exact)
-        return form is not None or (self._shape[0] % 2 == 0 and self._at(exact)[0].reversal is not None), form
+    def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, list[Any]]:
+        """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic forms."""
+        forms = symplectic_forms(self._P, exact)
+        return bool(forms) or (self._shape[0] % 2 == 0 and self._at(exact)[0].reversal is not None), forms
 
     def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
         """The eigenvalues of the true Floquet matrix, complex or mpc, sorted by modulus, largest first.
@@ -334,11 +334,8 @@ class FloquetMatrix:
         while True:
             matrix = self.enclosure(values, tried)
             with ctx.workprec(dps_to_prec(tried) + 64):
-                try:
-                    found = reciprocal_multipliers(matrix) if paired else general_multipliers(matrix)
-                except ValueError:  # not isolated at this precision
-                    found = []
-                if found and all(m.digits >= wanted for m in found):
+                found = reciprocal_multipliers(matrix) if paired else general_multipliers(matrix)
+                if all(m.digits >= wanted for m in found):
                     return found
             if tried > 12 * wanted + 200:
                 raise BadInputError(f"the multipliers have not {wanted} digits with {tried} digits of the Floquet "
@@ -372,11 +369,11 @@ class FloquetMatrix:
         Verdict.UNSTABLE
         """
         exact = self._numbers(values)
-        paired, form = self._structure(exact)
+        paired, forms = self._structure(exact)
         for digits in (10, 30, 100):
-            matrix = over_period(lambda: self._at(exact), self._turns, digits, strict=False)
+            matrix = over_period(lambda: self._at(exact), self._turns, digits, is_box(exact), strict=False)
             with ctx.workprec(dps_to_prec(digits) + 64):
-                verdict = judge(matrix, paired, form)
+                verdict = judge(matrix, paired, forms)
             if verdict != Verdict.UNDECIDED or is_box(exact):
                 break
         return verdict

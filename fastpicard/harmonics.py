@@ -94,9 +94,8 @@ class Harmonics:
 
 
 def _amplitude(c: Any, s: Any) -> Any:
-    if s == 0:
-        return abs(c)
-    return abs(s) if c == 0 else (c * c + s * s).sqrt()
+    c, s = abs(c).upper(), abs(s).upper()  # the square of a ball around 0 would reach below 0
+    return (c * c + s * s).sqrt() if c > 0 and s > 0 else c + s
 
 
 def _parities(waves: list[Wave]) -> tuple[bool, bool]:

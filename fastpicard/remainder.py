@@ -44,7 +44,8 @@ def a_priori(P: Harmonics, period: Any, n: int) -> Any:
         # From `last` on two orders more make a term at least four times smaller in norm, as |X X| < k k / 4:
         # all that follow are less than half of the last two.
         last = max(n + 1, math.ceil(2 * peak)) + BITS
-        before, term, total = arb_mat(P.size, P.size), arb_mat(P.size, P.size, _identity(P.size)), arb_mat(P.size, P.size)
+        before = total = arb_mat(P.size, P.size)
+        term = arb_mat(P.size, P.size, _identity(P.size))
         for k in range(1, last + 1):
             before, term = term, term * X / k
             if k > n:

@@ -27,7 +27,7 @@ from itertools import combinations
 from math import factorial
 from typing import Any
 
-from flint import acb, acb_mat, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
+from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
 
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.ring import expression_of
@@ -35,27 +35,31 @@ from fastpicard.ring import expression_of
 # -- structure ---------------------------------------------------------------
 
 
-def symplectic_form(P: SeriesMatrix, values: Mapping[Any, Any]) -> Any:
-    """A regular antisymmetric ``fmpq_mat`` ``W`` with ``W P(t)`` symmetric at all ``t``, or None.
+def symplectic_forms(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[Any]:
+    """Antisymmetric ``fmpq_mat`` ``W`` with ``W P(t)`` symmetric at all ``t``: a regular one, then a basis of all.
 
-    Exact: parameters with rational values are put in, all others stay symbols, so that
-    a form that is found holds at every value of those.
+    Empty if no such ``W`` is regular.  Exact: parameters with rational values are put in, all others stay symbols,
+    so that a form that is found holds at every value of those.
     """
     size = P.shape[0]
     places = list(combinations(range(size), 2))
     if size % 2:
-        return None
+        return []
     kernel = _kernel([_condition(A, size, places) for A in _coefficients(P, values)], len(places))
+    basis = [_antisymmetric(vector, size, places) for vector in kernel]
     for attempt in range(1, 6):
-        weights = [fmpq(factorial(attempt + k) % 97 + k + 1) for k in range(len(kernel))]
-        form = fmpq_mat(size, size)
-        for weight, vector in zip(weights, kernel, strict=True):
-            for (i, j), x in zip(places, vector, strict=True):
-                form[i, j] = form[i, j] + weight * x
-                form[j, i] = form[j, i] - weight * x
-        if kernel and form.det() != 0:
-            return form
-    return None
+        weights = [fmpq(factorial(attempt + k) % 97 + k + 1) for k in range(len(basis))]
+        form = sum((W * weight for W, weight in zip(basis, weights, strict=True)), fmpq_mat(size, size))
+        if basis and form.det() != 0:
+            return [form, *basis]
+    return []
+
+
+def _antisymmetric(vector: list[Any], size: int, places: list[tuple[int, int]]) -> Any:
+    form = fmpq_mat(size, size)
+    for (i, j), x in zip(places, vector, strict=True):
+        form[i, j], form[j, i] = x, -x
+    return form
 
 
 def _coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[dict[tuple[int, int], Any]]:
@@ -188,7 +192,8 @@ def _approximate_roots(p: Any) -> list[Any]:
             largest = max(largest, abs(change).upper())
         if largest < size * arb(2) ** (8 - ctx.prec):
             break
-    return [acb(z.real) if abs(z.imag) < arb(2) ** (-ctx.prec // 3) * (1 + abs(z)) else z for z in roots]
+    return [acb(z.real) if abs(z.imag) < arb(2) ** (-ctx.prec // 3) * (1 + abs(z))
+            and all(abs(z - w) > 4 * abs(z.imag) for w in roots if w is not z) else z for z in roots]
 
 
 def _middle(z: Any) -> Any:
@@ -268,14 +273,7 @@ def _near_circle(rho: Any) -> tuple[Multiplier, Multiplier]:
 
 
 def general_multipliers(matrix: Any) -> list[Multiplier]:
-    """The multipliers of any matrix of balls, sorted by modulus, largest first.
-
-    Raises
-    ------
-    ValueError
-        if two of them cannot be told apart at this precision.
-    """
-    found = acb_mat(matrix).eig(multiple=True)
+    """The multipliers of any matrix of balls, sorted by modulus, largest first."""
+    found = [disc.ball for disc in root_discs(matrix.charpoly())]
     found.sort(key=lambda z: (-float(abs(_middle(z))), cmath.phase(complex(_middle(z)))))
-    one = arb(1)
-    return [Multiplier(z, False if abs(z) > one or abs(z) < one else None) for z in found]
+    return [Multiplier(z, False if abs(z) > 1 or abs(z) < 1 else None) for z in found]

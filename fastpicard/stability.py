@@ -10,8 +10,8 @@ Where multipliers come in pairs ``lambda, 1/lambda`` (Hamiltonian or reversible 
   For 2 x 2 this is ``|trace| > 2``, [Neves] (15);
 - all roots of ``p`` real, simple and inside (-2, 2): all multipliers simple on the circle: stable;
 - a definite invariant form: with ``W`` from the Hamiltonian structure and any real polynomial ``f``,
-  ``K = W (M - 1/M) f(M + 1/M)`` is symmetric and ``M' K M = K``; if it is definite, orbits stay on
-  ellipsoids: stable, also where multipliers coincide.  (``W M`` and ``M' W M = W`` give
+  ``K = W (M - 1/M) f(M + 1/M)`` is symmetric and ``M' K M = K``; if a sum of such forms is definite, orbits stay
+  on ellipsoids: stable, also where multipliers coincide.  (``W M`` and ``M' W M = W`` give
   ``(W M)' = -M' W = -W/M``, so ``W (M - 1/M)`` is symmetric; ``f`` of ``M + 1/M`` is self-adjoint in ``W``.)
 
 For every other ``P``, by Schur and Cohn: the polynomial ``a_n z**n + ... + a_0`` has all roots inside the
@@ -24,8 +24,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from flint import arb, arb_mat, arb_poly
+from flint import arb, arb_mat
 
+from fastpicard.evaluate import numpy
 from fastpicard.spectrum import Disc, in_rho, root_discs
 
 
@@ -70,14 +71,14 @@ class Verdict:
 Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED = Verdict("STABLE"), Verdict("UNSTABLE"), Verdict("UNDECIDED")
 
 
-def judge(matrix: Any, paired: bool, form: Any) -> Verdict:
+def judge(matrix: Any, paired: bool, forms: list[Any]) -> Verdict:
     """The verdict on every true Floquet matrix in a matrix of balls.
 
     Parameters
     ----------
     matrix : arb_mat                contains ``M``
     paired : bool                   whether the multipliers of ``M`` are known to come in pairs lambda, 1/lambda
-    form : fmpq_mat or None         ``W`` with ``M' W M = W``, if there is one
+    forms : list of fmpq_mat        all ``W`` with ``M' W M = W``: a regular one, then a basis; or empty
     """
     if not paired:
         return schur_cohn(matrix)
@@ -86,7 +87,7 @@ def judge(matrix: Any, paired: bool, form: Any) -> Verdict:
     discs = root_discs(in_rho(matrix))
     proved = _by_rho(discs)
     if proved is None:
-        proved = _by_form(matrix, form, discs)
+        proved = _by_form(matrix, forms, discs)
     if proved is None:
         return Verdict.UNDECIDED.because("the balls leave open whether a value of rho = lambda + 1/lambda is in "
                                          "[-2, 2]: " + ", ".join(_place(d) for d in discs))
@@ -132,45 +133,48 @@ def _place(d: Disc) -> str:
 # -- the invariant form ------------------------------------------------------
 
 
-def _by_form(matrix: Any, form: Any, discs: list[Disc]) -> Verdict | None:
-    if form is None or not all(abs(d.center.real) < 2 for d in discs):
+def _by_form(matrix: Any, forms: list[Any], discs: list[Disc]) -> Verdict | None:
+    """Stable if the invariant form that is next to the mean of ``(M**k)' M**k`` over all ``k`` is definite.
+
+    That mean is an invariant form itself, and definite exactly if the powers stay bounded; it is computed in floats and
+    replaced by its neighbour among the invariant forms that are known, which balls then examine.
+    """
+    if not forms or not all(abs(d.center.real) < 2 for d in discs):
         return None
-    W = arb_mat(form)
-    inverse = arb_mat(form.inv()) * matrix.transpose() * W
-    K, rho = W * (matrix - inverse), matrix + inverse
-    size = matrix.nrows()
-    one = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
-    for f in [arb_poly([1]), *_signed(K, rho, discs, one)]:
-        form_f = K * _at_matrix(f, rho, one)
-        if is_definite(form_f) or is_definite(-1 * form_f):
-            return Verdict.STABLE.because(
-                "the quadratic form W (M - 1/M) f(M + 1/M) is invariant and definite, so orbits stay on ellipsoids; "
-                f"f has degree {f.degree()}")
+    W = arb_mat(forms[0])
+    inverse = arb_mat(forms[0].inv()) * matrix.transpose() * W
+    factor, invariant = matrix - inverse, []
+    for _ in discs:
+        invariant += [arb_mat(form) * factor for form in forms[1:]]
+        factor = factor * (matrix + inverse)
+    weights = _next_to(_mean_form(matrix), invariant)
+    total = sum((K * arb(x) for K, x in zip(invariant, weights, strict=True)), matrix * 0)
+    if is_definite(total):
+        return Verdict.STABLE.because("a quadratic form W (M - 1/M) f(M + 1/M) is invariant and definite, so orbits "
+                                      "stay on ellipsoids")
     return None
 
 
-def _signed(K: Any, rho: Any, discs: list[Disc], one: Any) -> list[Any]:
-    """``f`` that is 1 where the form is positive and -1 where it is negative: one candidate."""
-    centers = []
-    for cluster in sorted({d.cluster for d in discs}):
-        members = [d.center.real.mid() for d in discs if d.cluster == cluster]
-        centers.append((sum(members, arb(0)) / len(members)).mid())
-    total = arb_poly()
-    for i, x in enumerate(centers):
-        basis = arb_poly([1])
-        for j, y in enumerate(centers):
-            if j != i:
-                basis = basis * arb_poly([-y, 1]) / (x - y)
-        positive = (K * _at_matrix(basis, rho, one)).trace().mid() > 0
-        total = total + basis * (1 if positive else -1)
-    return [total] if len(centers) > 1 else []
+def _floats(matrix: Any) -> Any:
+    return numpy().array([float(x.mid()) for x in matrix.entries()]).reshape(matrix.nrows(), matrix.ncols())
 
 
-def _at_matrix(f: Any, matrix: Any, one: Any) -> Any:
-    total = one * 0
-    for c in reversed(f.coeffs()):
-        total = total * matrix + one * c
-    return total
+def _mean_form(matrix: Any) -> Any:
+    """The mean of ``(M**k)' M**k`` over the first ``2**20`` powers, in floats."""
+    power = _floats(matrix)
+    mean = numpy().eye(len(power))
+    for _ in range(20):
+        mean = (mean + power.T @ mean @ power) / 2
+        power = power @ power
+    return mean
+
+
+def _next_to(target: Any, invariant: list[Any]) -> list[float]:
+    """The coefficients of the combination next to a matrix, in least squares; zeros if floats do not reach."""
+    columns = numpy().array([_floats(K + K.transpose()).ravel() / 2 for K in invariant]).T
+    if not (numpy().isfinite(columns).all() and numpy().isfinite(target).all()):
+        return [0.0] * len(invariant)
+    return [float(x) for x in numpy().linalg.lstsq(columns, target.ravel(), rcond=None)[0]]
 
 
 def is_definite(matrix: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Hypothesis profiles: ``dev`` while writing, ``ci`` before landing.
+"""Hypothesis profiles: ``dev`` while writing, ``ci`` before landing, ``nightly`` for the long run.
 
 ``HYPOTHESIS_PROFILE=ci`` asks for 1000 examples a law, the same ones on every run.  There are no
 deadlines: times belong in ``benchmarks/``.
@@ -19,4 +19,10 @@ settings.register_profile(
     # On a busy machine drawing the first example can be slow; that says nothing about the law.
     suppress_health_check=[HealthCheck.too_slow],
 )
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "dev"))
+# HYPOTHESIS_PROFILE=nightly python -m pytest -n 2 tests/fastpicard/test_enclosure.py: 100000 containment checks.
+settings.register_profile("nightly", max_examples=10_000, deadline=None, database=None)
+
+PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "dev")
+settings.load_profile(PROFILE)
+
+CHECKS = {"ci": 2000, "nightly": 100_000}.get(PROFILE, 50)  # random containment checks of an enclosure

@@ -4,8 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from flint import arb
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, sqrt
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError
@@ -15,7 +14,9 @@ from tests.oracles import true_fundamental_matrix, truncation_bound
 t, a, b, c = map(Symbol, "tabc")
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])
 DAMPED = Matrix([[0, 1], [-a - b * cos(t), -c]])
-GENERAL = Matrix([[a / 3, sin(t), 0], [cos(2 * t) - b, 0, Rational(1, 2)], [0, a * sin(t) + cos(t) / 4, -Rational(1, 5)]])
+GENERAL = Matrix(
+    [[a / 3, sin(t), 0], [cos(2 * t) - b, 0, Rational(1, 2)], [0, a * sin(t) + cos(t) / 4, -Rational(1, 5)]]
+)
 
 
 def error_norm(F, values, digits=40):
@@ -61,7 +62,9 @@ def test_the_order_for_thirty_digits_is_that_of_the_true_error(a_value, b_value,
 
 @settings(max_examples=6)
 @given(
-    st.fractions(-2, 2, max_denominator=20), st.fractions(-2, 2, max_denominator=20), st.fractions(-1, 1, max_denominator=9)
+    st.fractions(-2, 2, max_denominator=20),
+    st.fractions(-2, 2, max_denominator=20),
+    st.fractions(-1, 1, max_denominator=9),
 )
 @pytest.mark.parametrize("P, n", [(MATHIEU, 22), (DAMPED, 22), (GENERAL, 16)])
 def test_the_bound_is_never_below_the_true_error(P, n, x, y, z):
@@ -158,5 +161,3 @@ def test_tolerances_must_be_positive_numbers(tol, error):
     """Zero, negative, text."""
     with pytest.raises(error):
         FloquetMatrix.for_accuracy(MATHIEU, t, {a: 1, b: 1}, tol)
-
-

@@ -1,0 +1,290 @@
+"""Verdicts and multipliers of the true equation: reference points, laws, and what must never be claimed."""
+
+import cmath
+import pickle
+
+import mpmath
+import pytest
+from flint import acb, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
+from hypothesis import assume, given, settings, strategies as st
+from sympy import Matrix, Rational, Symbol, cos, pi, sin, sqrt
+
+from fastpicard import BadInputError, FloquetMatrix, MissingParameterError, Verdict
+from fastpicard.spectrum import in_rho, root_discs, symplectic_forms
+from fastpicard.stability import is_definite, judge, schur_cohn
+from lagrangian import Rod, Scene, Support, euler_lagrange, linearize
+from tests.fastpicard.test_reference_cases import cases, numbers, read, system
+
+t, a, b, c, h, v = map(Symbol, "tabchv")
+MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 0)
+DAMPED = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 0)
+TWO_ALIKE = FloquetMatrix(
+    Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-a - b * cos(t), 0, 0, 0], [0, -a - b * cos(t), 0, 0]]), t, 0
+)
+POINTS = [x for x in cases("stability") if "class" in x.values[0]]
+
+
+@pytest.mark.parametrize("case", [x for x in POINTS if "a" in x.values[0] and not x.id.startswith("degenerate")])
+def test_points_of_mathieus_equation_have_their_class(case):
+    """Stable or unstable as another rigorous computation found; the enclosed trace holds its 30 digits."""
+    values = {a: read(case["a"]), b: read(case["b"])}
+
+    assert MATHIEU.verdict(values).name.lower() == case["class"]
+    with ctx.workprec(140):
+        assert abs(MATHIEU.enclosure(values, 35).trace() - arb(case["trace"])) < arb(10) ** -33 * abs(
+            arb(case["trace"])
+        )
+
+
+def rods(count):
+    """The Floquet matrix of that many uniform rods upside down, driven vertically, in h and v."""
+    g, length, amplitude, omega = Symbol("g"), Symbol("l"), Symbol("epsilon"), Symbol("omega0")
+    scene = Scene(
+        [Rod.uniform(1, length)] * count, support=Support(eta=amplitude * cos(omega * t)), gravity=g, upright=True, t=t
+    )
+    P, tau, period = linearize(euler_lagrange(scene)).first_order(omega)
+    return FloquetMatrix(P, tau, 0, period)
+
+
+RODS = {}
+
+
+@pytest.mark.parametrize("case", [x for x in POINTS if "v" in x.values[0]])
+def test_rods_upside_down_have_their_class_from_the_full_matrix(case):
+    """Up to six coupled rods, without normal modes: stable where the reference says so, next to the margin too."""
+    count = int(case["N"])
+    F = RODS.setdefault(count, rods(count))
+    names = {s.name: s for s in F._P.as_matrix().free_symbols}
+    verdict = F.verdict({names["h"]: read(case["h"]), names["v"]: read(case["v"])})
+
+    assert verdict.name.lower() == case["class"]
+    assert verdict.reason
+
+
+@settings(max_examples=40)
+@given(st.fractions(-3, 3, max_denominator=99), st.fractions(-3, 3, max_denominator=99))
+def test_the_trace_decides_and_the_general_routes_never_contradict_it(x, y):
+    """(15) on the enclosed trace; the same point as two uncoupled copies, through rho and the invariant form."""
+    values = {a: x, b: y}
+    trace, verdict = MATHIEU.enclosure(values, 20).trace(), MATHIEU.verdict(values)
+    assume(verdict != Verdict.UNDECIDED)
+
+    assert (verdict == Verdict.STABLE) == bool(abs(trace) < 2)
+    assert TWO_ALIKE.verdict(values) == verdict
+
+
+def test_points_on_a_boundary_are_undecided_whatever_the_digits():
+    """a = b = 0 grows linearly and a = 1/4, b = 0 does not: no ball can tell, and none pretends to."""
+    for values in ({a: 0, b: 0}, {a: Rational(1, 4), b: 0}):
+        verdict = MATHIEU.verdict(values)
+        assert verdict == Verdict.UNDECIDED and "cannot be told from" in verdict.reason
+
+
+def test_a_millionth_beside_a_boundary_is_decided():
+    """Beside b* = q*/2 of the Paul trap, on both sides, at 1e-20 too."""
+    star = Rational("0.454023166867288796935291288349769231900145")
+    for distance in (Rational(1, 10**6), Rational(1, 10**20)):
+        assert MATHIEU.verdict({a: 0, b: star - distance}) == Verdict.STABLE
+        assert MATHIEU.verdict({a: 0, b: star + distance}) == Verdict.UNSTABLE
+
+
+def test_damped_systems_are_judged_without_the_trace():
+    """|trace| < 2 proves nothing there: a negatively damped oscillator has a small trace and is unstable."""
+    growing = {a: Rational(1, 3), b: Rational(1, 10), c: Rational(-1, 50)}
+
+    assert abs(DAMPED.enclosure(growing).trace()) < 2
+    assert DAMPED.verdict(growing) == Verdict.UNSTABLE
+    assert "Schur" in DAMPED.verdict(growing).reason
+    assert DAMPED.verdict({**growing, c: Rational(1, 50)}) == Verdict.STABLE
+    assert "asymptotically" in DAMPED.verdict({**growing, c: Rational(1, 50)}).reason
+
+
+FROM_ZERO = [x for x in cases("floquet_other") if x.values[0]["t0"] == "0"]
+
+
+@pytest.mark.parametrize("case", [x for x in FROM_ZERO if "multipliers" in x.values[0]])
+def test_multipliers_agree_with_the_reference(case):
+    """Every reference multiplier lies near one of ours; verdicts agree with the spectral radius where it is clear."""
+    F = FloquetMatrix(system(case), t, 0, read(case["t1"]))
+    values = numbers(case["params"])
+    found = F.multipliers(values, 4 if case["id"] == "nilpotent3" else 20)
+    for real, imag in case["multipliers"]:
+        target = mpmath.mpc(real, imag)
+        nearest = min(abs(x - target) for x in found)
+        assert nearest < (1e-4 if case["id"] == "nilpotent3" else 1e-9) * max(1, abs(target))
+    radius = mpmath.mpf(case["spectral_radius"])
+    if abs(radius - 1) > 1e-6:
+        assert F.verdict(values) == (Verdict.UNSTABLE if radius > 1 else Verdict.STABLE)
+
+
+@settings(max_examples=40)
+@given(st.fractions(-3, 3, max_denominator=99), st.fractions(-3, 3, max_denominator=99))
+def test_multipliers_come_in_reciprocal_pairs_on_or_off_the_circle(x, y):
+    """Number k from the front times number k from the back is 1; what is on the circle is proved to be there."""
+    for F in (MATHIEU, TWO_ALIKE):
+        found = F.multiplier_enclosures({a: x, b: y}, 20)
+        for one, other in zip(found, reversed(found), strict=True):
+            product = one.ball * other.ball
+            assert product.real.contains(1) and product.imag.contains(0)
+            assert one.on_unit_circle == other.on_unit_circle
+    verdict = MATHIEU.verdict({a: x, b: y})
+    circle = [m.on_unit_circle for m in MATHIEU.multiplier_enclosures({a: x, b: y}, 20)]
+    if verdict != Verdict.UNDECIDED:
+        assert circle == [verdict == Verdict.STABLE] * 2
+
+
+def test_stable_multipliers_are_reported_on_the_circle():
+    """cos + i sin, correctly rounded: the modulus is 1 to the last digit, also for four coupled ones at 40 digits."""
+    P = Matrix(
+        [[0, 0, 1, 0], [0, 0, 0, 1], [-1 - cos(t) / 9, Rational(1, 5), 0, 0], [Rational(1, 5), -2 - cos(t) / 9, 0, 0]]
+    )
+    found = FloquetMatrix(P, t, 0).multipliers(digits=40)
+
+    with mpmath.workdps(60):
+        assert all(abs(abs(x) - 1) < mpmath.mpf(10) ** -40 for x in found)
+    assert all(abs(abs(x) - 1) <= 4e-16 for x in FloquetMatrix(P, t, 0).multipliers())
+    assert all(isinstance(x, complex) for x in FloquetMatrix(P, t, 0).multipliers())
+
+
+def test_double_multipliers_have_their_digits_too():
+    """The free particle (both 1, a Jordan block), and two copies of one oscillator."""
+    free = FloquetMatrix(Matrix([[0, 1], [0, 0]]), t, 0)
+
+    assert [complex(x) for x in free.multipliers(digits=20)] == [1, 1]
+    assert free.verdict() == Verdict.UNDECIDED
+    assert len(TWO_ALIKE.multipliers({a: -0.1, b: 0.55})) == 4
+
+
+def test_sum_resonance_is_unstable_and_difference_resonance_stable():
+    """Krein: two oscillators coupled through cos((w1 + w2) t) collide with opposite signs, through the difference with
+    equal ones."""
+    first, second, eps = Rational(1), Rational(3), Rational(1, 10)
+    for frequency, expected in ((4, Verdict.UNSTABLE), (2, Verdict.STABLE)):
+        coupling = eps * cos(frequency * t)
+        P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-(first**2), coupling, 0, 0], [coupling, -(second**2), 0, 0]])
+        F = FloquetMatrix(P, t, 0, 2 * pi / frequency)
+        assert F.verdict() == expected
+
+
+# -- the pieces ------------------------------------------------------------------
+
+
+def test_the_symplectic_form_is_found_where_there_is_one():
+    """Second-order systems whose mass matrix is not the identity; not for damping; for any Hamiltonian in x and p."""
+    mass, stiff = Matrix([[2, 1], [1, 3]]), Matrix([[5, 1], [1, 4]])
+    zero, one = Matrix.zeros(2), Matrix.eye(2)
+    second = Matrix([[zero, one], [-(mass.inv()) * (a * stiff + b * stiff * mass * stiff * cos(t)), zero]])
+    hamiltonian = Matrix(
+        [[a * sin(t), 1, cos(t), 0], [1, b, 0, 2], [-3, cos(2 * t), -a * sin(t), -1], [cos(2 * t), 1, -1, -b]]
+    )
+    damped = second - Matrix([[zero, zero], [zero, one / 7]])
+
+    for P, exists in ((second, True), (hamiltonian, True), (damped, False)):
+        forms = symplectic_forms(FloquetMatrix(P, t, 0)._P, {})
+        assert bool(forms) == exists
+        for form in forms[:1]:
+            W = Matrix(4, 4, [Rational(int(x.p), int(x.q)) for x in form.entries()])
+            product = (W * P).expand()
+            assert W.T == -W and W.det() != 0 and (product - product.T).expand().is_zero_matrix
+
+
+@given(st.lists(st.complex_numbers(max_magnitude=3, min_magnitude=0.1), min_size=1, max_size=4))
+@settings(max_examples=60)
+def test_discs_hold_the_roots(roots):
+    """Real polynomials from conjugate pairs: every root is in a disc, every cluster has as many roots as discs."""
+    with ctx.workprec(120):
+        p = arb_poly([1])
+        for z in roots:
+            p = p * arb_poly([arb(z.real) ** 2 + arb(z.imag) ** 2, -2 * arb(z.real), 1])
+        discs = root_discs(p)
+        for z in roots:
+            assert any(not abs(acb(z.real, z.imag) - d.center) > d.radius for d in discs)
+        assert all(not d.real or any(z.imag == 0 for z in roots) for d in discs if d.alone)
+
+
+@given(st.lists(st.floats(-0.95, 0.95), min_size=2, max_size=4), st.floats(1.1, 3))
+@settings(max_examples=60)
+def test_schur_and_cohn_count_what_is_outside(inside, outside):
+    """Triangular matrices show their multipliers."""
+    size = len(inside)
+    lower = [[inside[i] if i == j else (0.5 if j < i else 0) for j in range(size)] for i in range(size)]
+
+    assert schur_cohn(arb_mat(lower)) == Verdict.STABLE
+    lower[0][0] = outside
+    assert schur_cohn(arb_mat(lower)) == Verdict.UNSTABLE
+    lower[0][0] = 1.0
+    assert schur_cohn(arb_mat(lower)) == Verdict.UNDECIDED
+
+
+def test_the_polynomial_in_rho_has_the_sums_of_reciprocal_pairs_as_roots():
+    """diag(2, 1/2, 3, 1/3): rho = 5/2 and 10/3."""
+    with ctx.workprec(100):
+        diagonal = [arb(2), arb(1) / 2, arb(3), arb(1) / 3]
+        p = in_rho(arb_mat([[diagonal[i] if i == j else 0 for j in range(4)] for i in range(4)]))
+        assert p(arb(5) / 2).contains(0) and p(arb(10) / 3).contains(0) and p.degree() == 2
+
+
+def rotations(*angles):
+    """A symplectic matrix that turns one plane after another, in balls, and its form."""
+    m = len(angles)
+    rows = [[arb(0)] * (2 * m) for _ in range(2 * m)]
+    form = fmpq_mat(2 * m, 2 * m)
+    for k, angle in enumerate(angles):
+        rows[k][k] = rows[k + m][k + m] = arb(angle).cos()
+        rows[k][k + m], rows[k + m][k] = arb(angle).sin(), -arb(angle).sin()
+        form[k, k + m], form[k + m, k] = fmpq(1), fmpq(-1)
+    return arb_mat(rows), [form, form]
+
+
+def test_a_rotation_by_equal_angles_is_stable_by_its_invariant_form():
+    """Multipliers that coincide: with one sign a definite form proves stability, f = 1 or not; with two signs nothing
+    does, and without the form nothing is claimed."""
+    with ctx.workprec(100):
+        for angles in ((1.0, 1.0), (1.0, 1.0, -2.0)):
+            matrix, forms = rotations(*angles)
+            assert judge(matrix, True, forms) == Verdict.STABLE
+            assert judge(matrix, True, []) == Verdict.UNDECIDED
+        assert judge(*rotations(1.0, -1.0)[:1], True, rotations(1.0, -1.0)[1]) == Verdict.UNDECIDED
+
+
+@given(st.lists(st.floats(0.1, 5), min_size=3, max_size=3), st.floats(-1, 1))
+@settings(max_examples=40)
+def test_definite_forms_are_found_definite(diagonal, x):
+    """L D L' with positive D is; with a negative entry it is not."""
+    with ctx.workprec(100):
+        lower = arb_mat([[1, 0, 0], [x, 1, 0], [x * x, -x, 1]])
+
+        def form(d):
+            return lower * arb_mat([[d[0], 0, 0], [0, d[1], 0], [0, 0, d[2]]]) * lower.transpose()
+
+        assert is_definite(form(diagonal))
+        assert not is_definite(form([diagonal[0], -diagonal[1], diagonal[2]]))
+
+
+def test_a_verdict_is_a_value_with_three_outcomes():
+    """Equality by outcome, numbers 1, -1, 0 for charts, a sentence, no truth value, pickling."""
+    verdict = MATHIEU.verdict({a: -0.1, b: 0.55})
+
+    assert verdict == Verdict.STABLE != Verdict.UNSTABLE and hash(verdict) == hash(Verdict.STABLE)
+    assert (int(Verdict.STABLE), int(Verdict.UNSTABLE), int(Verdict.UNDECIDED)) == (1, -1, 0)
+    assert str(verdict).startswith("STABLE: the determinant is 1") and repr(verdict) == "Verdict.STABLE"
+    assert pickle.loads(pickle.dumps(verdict)).reason == verdict.reason
+    with pytest.raises(TypeError, match="three outcomes"):
+        bool(verdict)
+    assert verdict != "STABLE"
+
+
+def test_verdicts_need_every_parameter():
+    """A missing value is named."""
+    with pytest.raises(MissingParameterError, match="b"):
+        MATHIEU.verdict({a: 1})
+    with pytest.raises(BadInputError):
+        MATHIEU.multipliers({a: (0, 1), b: 1})
+
+
+def test_irrational_coefficients_do_not_hide_the_structure():
+    """sqrt(2), pi: the form is found with the parameters as symbols."""
+    F = FloquetMatrix(Matrix([[0, sqrt(2)], [-a / pi - b * cos(t), 0]]), t, 0)
+
+    assert F.verdict({a: 1, b: fmpq(1, 10)}) in (Verdict.STABLE, Verdict.UNSTABLE)
+    assert abs(cmath.phase(complex(F.multiplier_enclosures({a: 1, b: 0.1})[0]))) <= cmath.pi
