@@ -1,0 +1,231 @@
+"""Chains of rods against SymPy with SciPy, heyoka, MuJoCo, Pinocchio and mpmath, in one run, as ratios.
+
+    python benchmarks/chains.py [rhs] [many] [motion] [digits] [start]
+
+A peer that is not installed is left out with a sentence (pip install heyoka mujoco pin).  Every time is the least of
+several repeats on one core; the machine decides the times, the ratios are what matters.  Every peer's answer is
+compared with ours before its time is printed.
+"""
+
+# ruff: noqa: B023  (every function here is timed before its loop goes on)
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib import import_module, metadata
+from importlib.util import find_spec
+from typing import Any
+
+import mpmath
+import numpy as np
+
+from lagrangian import CompiledChain, Rod, Scene, compile_equations, euler_lagrange, simulate
+from lagrangian.floats import FINEST, ORDER, integrate_floats
+from lagrangian.solvers import heyoka_system
+
+GRAVITY = 9.81
+
+
+def least(function: Callable[[], Any], seconds: float = 1.0) -> float:
+    """The least time of one call, over about ``seconds``."""
+    function()
+    calls, best, end = 1, float("inf"), time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        start = time.perf_counter()
+        for _ in range(calls):
+            function()
+        spent = (time.perf_counter() - start) / calls
+        best = min(best, spent)
+        calls = max(1, min(1000, int(2e-3 / spent)))
+    return best
+
+
+def version(package: str) -> str | None:
+    """The version installed, or None after saying so."""
+    if find_spec({"pin": "pinocchio"}.get(package, package)) is None:
+        print(f"  {package} is not installed; its rows are left out (pip install {package}).")
+        return None
+    return metadata.version(package)
+
+
+def random_rods(n: int) -> tuple[Any, ...]:
+    rng = np.random.default_rng(n)
+    length = rng.uniform(0.5, 1.5, n) / n
+    center = rng.uniform(0.3, 0.7, n) * length
+    return rng.uniform(0.5, 1.5, n), length, center, np.sqrt(center**2 + rng.uniform(0.05, 0.15, n) * length**2)
+
+
+def state(n: int) -> tuple[Any, Any]:
+    rng = np.random.default_rng(n + 1)
+    return rng.uniform(-3, 3, n), rng.normal(size=n)
+
+
+def pinocchio_chain(rods: tuple[Any, ...]) -> Callable[[Any, Any], Any]:
+    pin = import_module("pinocchio")
+    model, parent = pin.Model(), 0
+    for k, (m, _, H, R) in enumerate(zip(*rods)):
+        offset = np.array([0.0, 0.0, rods[1][k - 1] if k else 0.0])
+        parent = model.addJoint(parent, pin.JointModelRY(), pin.SE3(np.eye(3), offset), f"joint{k}")
+        model.appendBodyToJoint(parent, pin.Inertia(m, np.array([0.0, 0.0, H]), np.eye(3) * m * (R * R - H * H)),
+                                pin.SE3.Identity())
+    model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
+    data, zero = model.createData(), np.zeros(model.nv)
+    return lambda q, v: pin.aba(model, data, q, v, zero)
+
+
+def mujoco_chain(rods: tuple[Any, ...]) -> Callable[[Any, Any], Any]:
+    mujoco = import_module("mujoco")
+    body = ""
+    for k, (m, _, H, R) in reversed(list(enumerate(zip(*(part.tolist() for part in rods))))):
+        height, spin = float(rods[1][k - 1]) if k else 0.0, m * (R * R - H * H)
+        body = (f'<body pos="0 0 {height}"><joint type="hinge" axis="0 1 0"/>'
+                f'<inertial pos="0 0 {H}" mass="{m}" diaginertia="{spin} {spin} {spin}"/>{body}</body>')
+    options = '<compiler balanceinertia="false" boundmass="0" boundinertia="0"/>'
+    model = mujoco.MjModel.from_xml_string(f'<mujoco>{options}<option gravity="0 0 {-GRAVITY}"/>'
+                                           f"<worldbody>{body}</worldbody></mujoco>")
+    data = mujoco.MjData(model)
+
+    def forward(q: Any, v: Any) -> Any:
+        data.qpos[:], data.qvel[:] = q, v
+        mujoco.mj_forward(model, data)
+        return data.qacc
+    return forward
+
+
+def right_hand_sides() -> None:
+    print("\nOne right-hand side, random rods: us a call, and how many times ours")
+    print(f"{'n':>8} {'ours':>9} {'ns/link':>8}   peers")
+    packages = {name: version(name) for name in ("mujoco", "pin")}
+    for n in (2, 10, 100, 300, 1000, 10_000, 100_000, 1_000_000):
+        rods, (theta, omega) = random_rods(n), state(n)
+        chain = CompiledChain(*rods, GRAVITY)
+        mine = chain.acceleration(0, theta, omega)
+        ours = least(lambda: chain.acceleration(0, theta, omega), 2.0)
+        cells = []
+        q, v = np.diff(theta, prepend=0.0), np.diff(omega, prepend=0.0)
+        q = np.remainder(q + np.pi, 2 * np.pi) - np.pi
+        for name, build in (("pin", pinocchio_chain), ("mujoco", mujoco_chain)):
+            if packages[name] is None or n > 300:
+                continue
+            peer = build(rods)
+            assert abs(np.cumsum(peer(q, v)) - mine).max() < 1e-6 * abs(mine).max(), name
+            spent = least(lambda: peer(q, v))
+            cells.append(f"{name} {packages[name]}: {1e6 * spent:.4g} ({spent / ours:.3g}x)")
+        if n <= 10:
+            scene = Scene([Rod(*x) for x in zip(*rods)], gravity=GRAVITY)
+            dense = compile_equations(euler_lagrange(scene))
+            assert abs(dense.acceleration(0, theta, omega) - mine).max() < 1e-9 * abs(mine).max()
+            spent = least(lambda: dense.acceleration(0, theta, omega))
+            cells.append(f"SymPy lambdify: {1e6 * spent:.4g} ({spent / ours:.3g}x)")
+        print(f"{n:>8} {1e6 * ours:>9.4g} {1e9 * ours / n:>8.3g}   {'; '.join(cells)}")
+
+
+def many_chains() -> None:
+    print("\n1000 chains at once: ns a link and chain")
+    for n in (2, 10, 100, 1000):
+        chain, rng = CompiledChain(*random_rods(n), GRAVITY), np.random.default_rng(n)
+        theta, omega = rng.uniform(-3, 3, (n, 1000)), rng.normal(size=(n, 1000))
+        spent = least(lambda: chain.acceleration(0, theta, omega), 3.0)
+        print(f"{n:>8} {1e9 * spent / n / 1000:>8.3g}")
+
+
+def swinging(n: int) -> CompiledChain:
+    """n bobs of 1 kg on rods of 1 m, angles from the downward vertical."""
+    ones = np.ones(n)
+    return CompiledChain(ones, ones, ones, ones, GRAVITY, upright=False)
+
+
+def motions() -> None:
+    print("\n10 s from 2 rad at rest, to roundoff: ms (error of the worst angle), and how many times ours")
+    heyoka_version = version("heyoka")
+    for n in (2, 5, 10, 20):
+        chain, theta, omega, times = swinging(n), np.full(n, 2.0), np.zeros(n), np.array([0.0, 10.0])
+        def mine() -> Any:
+            return integrate_floats(chain, theta, omega, times, ORDER, FINEST)
+        true = simulate(chain, theta, omega, times, digits=25 + 2 * n).theta[-1].astype(float) if n <= 5 else None
+
+        def wrong(angles: Any) -> str:
+            return f"{abs(angles - true).max():.0e}" if true is not None else "chaos"
+        ours = least(mine, 3.0)
+        print(f"n = {n}: ours {1e3 * ours:.3g} ({wrong(mine().theta[-1])}), {mine().steps} steps")
+        whole = least(lambda: simulate(chain, theta, omega, times), 2.0)
+        print(f"   simulate(...), which runs it again to know its error: {1e3 * whole:.3g} ({whole / ours:.3g}x)")
+        if n <= 2:
+            scene = Scene([Rod.bob(1, 1)] * n, gravity=GRAVITY, upright=False)
+            dense = compile_equations(euler_lagrange(scene))
+            solve = import_module("scipy.integrate").solve_ivp
+
+            def other() -> Any:
+                return solve(lambda t, y: np.concatenate([y[n:], dense.acceleration(t, y[:n], y[n:])]), (0, 10),
+                             np.concatenate([theta, omega]), "DOP853", rtol=1e-13, atol=1e-13).y[:n, -1]
+            spent = least(other, 3.0)
+            print(f"   SciPy DOP853, SymPy right-hand side: {1e3 * spent:.4g} ({wrong(other())}): {spent / ours:.4g}x")
+        if heyoka_version and n <= 10:
+            heyoka = import_module("heyoka")
+            start = time.perf_counter()
+            integrator = heyoka.taylor_adaptive(heyoka_system(chain, heyoka), [*theta, *omega], tol=2.3e-16)
+            compiled = time.perf_counter() - start
+
+            def fast() -> Any:
+                integrator.time = 0.0
+                integrator.state[:] = [*theta, *omega]
+                integrator.propagate_until(10.0)
+                return integrator.state[:n]
+            spent = least(fast, 3.0)
+            print(f"   heyoka {heyoka_version}, after {compiled:.1f} s of compiling: {1e3 * spent:.4g} "
+                  f"({wrong(fast())}): "
+                  f"{spent / ours:.3g}x")
+
+
+def digits() -> None:
+    print("\n50 digits, double pendulum from 2 rad, 0.1 s of motion (mpmath takes its first steps in it)")
+    chain = swinging(2)
+    ours = least(lambda: simulate(chain, [2, 2], [0, 0], [0, 0.1], digits=50), 2.0) / 2  # it runs twice
+    with mpmath.workdps(50):
+        g = mpmath.mpf(GRAVITY)
+
+        def rates(_: Any, y: Any) -> Any:
+            a, b, u, v = y
+            s, c = mpmath.sin(a - b), mpmath.cos(a - b)
+            p, q = -v * v * s - 2 * g * mpmath.sin(a), u * u * s - g * mpmath.sin(b)
+            return [u, v, (p - c * q) / (2 - c * c), (2 * q - c * p) / (2 - c * c)]
+        start = time.perf_counter()
+        other = mpmath.odefun(rates, 0, [mpmath.mpf(2)] * 2 + [mpmath.mpf(0)] * 2)(mpmath.mpf(0.1))
+        spent = time.perf_counter() - start
+        mine = simulate(chain, [2, 2], [0, 0], [0, 0.1], digits=50).theta[-1]
+        apart = mpmath.nstr(max(abs(x - y) for x, y in zip(mine, other)), 2)
+    print(f"ours {ours:.3g} s, mpmath.odefun {mpmath.__version__} {spent:.3g} s: {spent / ours:.4g}x; apart by {apart}")
+
+
+START = """
+import time; start = time.perf_counter()
+import numpy as np
+from lagrangian import CompiledChain, simulate
+chain = CompiledChain([1.0] * 5, [1.0] * 5, [0.5] * 5, [0.6] * 5, upright=False)
+loaded = time.perf_counter()
+chain.acceleration(0, [0.1] * 5, [0.0] * 5); first = time.perf_counter()
+simulate(chain, [2] * 5, [0] * 5, [0, 1]); second = time.perf_counter()
+print(f"{loaded - start:.2f} s to import, {first - loaded:.2f} s to the first acceleration, "
+      f"{second - first:.2f} s to the first motion")
+"""
+
+
+def start() -> None:
+    print("\nFirst calls in a new process: without and with numba's cache")
+    with tempfile.TemporaryDirectory() as folder:
+        for label in ("translated", "from the cache"):
+            environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
+            done = subprocess.run([sys.executable, "-c", START], env=environment, capture_output=True, text=True,
+                                  check=True)
+            print(f"{label:>15}: {done.stdout.strip()}")
+
+
+PARTS = {"rhs": right_hand_sides, "many": many_chains, "motion": motions, "digits": digits, "start": start}
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or PARTS:
+        PARTS[name]()
