@@ -12,6 +12,7 @@ floquet, mathieu.
 """
 
 from fastpicard.boundaries import Boundary, Root, boundaries
+from fastpicard.certify import CertifiedChart, certify
 from fastpicard.errors import (
     BadInputError,
     BadTypeError,
@@ -36,6 +37,7 @@ __all__ = [
     "BadInputError",
     "BadTypeError",
     "Boundary",
+    "CertifiedChart",
     "FastPicardError",
     "FloquetMatrix",
     "FundamentalMatrix",
@@ -50,6 +52,7 @@ __all__ = [
     "ShapeError",
     "Verdict",
     "boundaries",
+    "certify",
     "fast_picard",
     "gather",
     "mathieu_a",

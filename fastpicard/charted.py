@@ -1,0 +1,272 @@
+r"""The two variables of a chart, and the polynomials in them.
+
+A chart has two parameters x and y.  What the equation holds of them may be a power, as ``1/v**2`` in the rods'
+equations, so inside the variables are ``u = x**p`` and ``w = y**q``: monotone, so that rectangles stay
+rectangles, and everything is a polynomial in them.
+
+Problems that decouple into *modes* are one small equation with several sets of parameters (vertically driven rods:
+Mathieu's equation with ``a = -mu_i/v**2``, ``b = mu_i h``, [Neves] (21)).  One exact polynomial serves them all:
+a monomial ``a**i b**j`` becomes a number times a monomial in u and w.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import gcd
+from typing import Any
+
+import sympy
+from flint import arb, ctx, fmpz_poly
+from sympy import CRootOf, Dummy, Expr, Symbol
+
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
+from fastpicard.evaluate import Values, exact_number, expression_ball, numpy
+from fastpicard.floquet import FloquetMatrix
+from fastpicard.reading import as_expression
+from fastpicard.ring import Monomial, expression_of
+from fastpicard.vectorise import Collapsed
+
+Array = Any
+Exponents = tuple[int, int]
+Member = Mapping[Symbol, tuple[Expr, Exponents]]  # a parameter of P: a number times x**i y**j
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A parameter of a chart: ``lo <= symbol <= hi``; inside, ``u = symbol**power``."""
+
+    symbol: Symbol
+    lo: float
+    hi: float
+    power: int = 1
+
+    def inner(self, x: Array) -> Array:
+        """``x**power``, to four ulp."""
+        array = numpy().asarray(x, dtype=float)
+        return array if self.power == 1 else array**self.power
+
+    def outer(self, u: Array) -> Array:
+        """The parameter that belongs to ``u``, to four ulp and inside the chart."""
+        np = numpy()
+        if self.power == 1:
+            return np.clip(u, self.lo, self.hi)
+        return np.clip(np.asarray(u, dtype=float) ** (1.0 / self.power), self.lo, self.hi)
+
+    def edges(self, count: int) -> Array:
+        """Equal parts of the parameter's interval."""
+        np = numpy()
+        edges = np.linspace(self.lo, self.hi, count + 1)
+        edges[0], edges[-1] = self.lo, self.hi
+        return edges
+
+
+@dataclass(frozen=True)
+class Charted:
+    """An equation with two parameters left.
+
+    Attributes
+    ----------
+    F : FloquetMatrix        its parameters are those of the members
+    axes : (Axis, Axis)
+    members : sequence of {Symbol: (number, (i, j))}     the parameters as numbers times ``x**i y**j``, mode by mode
+    decoupled : bool         whether the members are modes of one system, which is stable where all of them are
+    """
+
+    F: FloquetMatrix
+    axes: tuple[Axis, Axis]
+    members: tuple[Member, ...]
+    decoupled: bool
+
+    def exponents(self, member: Member, powers: Sequence[tuple[Symbol, int]]) -> Exponents:
+        """The exponents of u and w of a monomial in the parameters."""
+        return _exponents(member, powers, self.axes)
+
+    def factor(self, member: Member, powers: Sequence[tuple[Symbol, int]]) -> Any:
+        """The number in front of it, a ball."""
+        return math.prod((constant_ball(member[s][0]) ** e for s, e in powers if member[s][0] != 1), start=arb(1))
+
+    def polynomials(self, collapsed: Collapsed, member: Member) -> list[dict[Exponents, Any]]:
+        """Exact constants as polynomials in u and w with balls as coefficients."""
+        parameters = [v.parameter for v in collapsed.variables]
+        if any(symbol is None for symbol, _ in parameters):
+            raise BadInputError("a chart needs polynomials in its parameters, but a phase or function of them is left: "
+                                f"{next(v for v in collapsed.variables if v.parameter[0] is None).symbols}.  Name it "
+                                "by a symbol of its own.")
+        found = []
+        for exponents, row in zip(collapsed.exponents, collapsed.coefficients(), strict=True):
+            terms: dict[Exponents, Any] = {}
+            for m, c in zip(exponents, row, strict=True):
+                powers = [(symbol, unit * k) for (symbol, unit), k in zip(parameters, m, strict=True) if k]
+                place = self.exponents(member, powers)
+                terms[place] = terms.get(place, arb(0)) + c * self.factor(member, powers)
+            found.append(terms)
+        return found
+
+    def waves(self, member: Member) -> dict[tuple[int, int], dict[Any, dict[Exponents, Any]]]:
+        """``P`` by entries and waves (kind, frequency): the amplitudes as polynomials in u and w."""
+        found: dict[tuple[int, int], dict[Any, dict[Exponents, Any]]] = {}
+        for i, row in enumerate(self.F._P.rows):
+            for j, modes in enumerate(row):
+                for (kind, angle, monomial), f in modes.items():
+                    powers, number = parameters_of(monomial)
+                    terms = found.setdefault((i, j), {}).setdefault((kind, angle), {})
+                    place = self.exponents(member, powers)
+                    amount = arb(f[0]) * constant_ball(number) * self.factor(member, powers)
+                    terms[place] = terms.get(place, arb(0)) + amount
+        return found
+
+
+def parameters_of(monomial: Monomial) -> tuple[list[tuple[Symbol, int]], Expr]:
+    """The powers of Symbols in a monomial, and the rest, a number."""
+    powers, number = [], sympy.Integer(1)
+    for g, e in monomial:
+        expression = expression_of(g)
+        if expression.is_Symbol and e == int(e):
+            powers.append((expression, int(e)))
+        elif expression.free_symbols:
+            raise BadInputError(f"a chart needs whole powers of its parameters, but P contains {expression}**{e}.  "
+                                "Name that by a symbol of its own.")
+        else:
+            number *= expression ** sympy.Rational(e)
+    return powers, number
+
+
+def _exponents(member: Member, powers: Sequence[tuple[Symbol, int]], axes: tuple[Axis, Axis]) -> Exponents:
+    i = sum(member[s][1][0] * e for s, e in powers)
+    j = sum(member[s][1][1] * e for s, e in powers)
+    return i // axes[0].power, j // axes[1].power
+
+
+@lru_cache(maxsize=512)
+def _constant(e: Expr, bits: int) -> Any:
+    roots = sorted(e.atoms(CRootOf), key=str)
+    names = {root: Dummy() for root in roots}
+    values = {name: _root_ball(root) for root, name in names.items()}
+    return expression_ball(e.xreplace(names), values)
+
+
+def constant_ball(e: Expr) -> Any:
+    """A constant SymPy expression as a ball at the working precision; roots of polynomials included."""
+    return _constant(e, ctx.prec)
+
+
+def _root_ball(root: Any) -> Any:
+    """A real ``CRootOf``: real roots come first, in ascending order."""
+    coefficients = [int(c) for c in reversed(root.poly.all_coeffs())]
+    found: Any = fmpz_poly(coefficients).complex_roots()
+    real = sorted((z.real for z, _ in found if z.imag == 0), key=float)
+    if root.index >= len(real):
+        raise BadInputError(f"the parameters must be real, but {root} is not.  Check the modes.")
+    return real[root.index]
+
+
+# -- reading -------------------------------------------------------------------
+
+
+def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: Any) -> Charted:
+    """The chart of an equation, or of one equation for each mode.
+
+    Raises
+    ------
+    BadTypeError, BadInputError
+        if an axis is not ``(Symbol, lo, hi)`` with ``lo < hi``, or a parameter occurs in another way than as a power.
+    MissingParameterError
+        if a parameter is neither on an axis, nor fixed, nor given by the modes.
+    """
+    if not isinstance(F, FloquetMatrix):
+        raise BadTypeError(f"a chart is drawn of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
+    first, second = _axis(x, "x"), _axis(y, "y")
+    if first.symbol == second.symbol:
+        raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two.")
+    numbers = {s: _exact_expression(value, s) for s, value in (fixed or {}).items()}
+    if numbers:
+        F = with_values(F, numbers)
+    decoupled = modes is not None
+    given = list(modes) if decoupled else [{s: s for s in (first.symbol, second.symbol)}]
+    members = tuple(_member(mode, numbers, first.symbol, second.symbol) for mode in given)
+    for member in members:
+        missing = sorted((s for s in parameters(F) if s not in member), key=str)
+        if missing:
+            raise MissingParameterError(f"every parameter must be on an axis or have a value, but "
+                                        f"{', '.join(map(str, missing))} is neither.  Give it in fixed={{...}}.")
+    used = [[sum(member[s][1][k] * e for s, e in parameters_of(monomial)[0]) for member in members
+             for row in F._P.rows for entry in row for _, _, monomial in entry] for k in (0, 1)]
+    axes = (_with_power(first, used[0]), _with_power(second, used[1]))
+    return Charted(F, axes, members, decoupled)
+
+
+def parameters(F: FloquetMatrix) -> set[Symbol]:
+    """All parameters of ``P``."""
+    return {symbol for row in F._P.rows for modes in row for _, _, monomial in modes
+            for symbol, _ in parameters_of(monomial)[0]}
+
+
+def with_values(F: FloquetMatrix, values: Mapping[Symbol, Expr]) -> FloquetMatrix:
+    """The same equation with numbers put in, exactly."""
+    return FloquetMatrix(F._P.as_matrix().xreplace(dict(values)), F.t, F.n, F.period.xreplace(dict(values)))
+
+
+def _exact_expression(value: Any, symbol: Symbol) -> Expr:
+    if isinstance(value, Expr) and not value.has(sympy.Float):
+        exact_number(value, f"the value of {symbol}")
+        return value
+    number = exact_number(value, f"the value of {symbol}")
+    if isinstance(number, arb):
+        raise BadTypeError(f"a fixed parameter must be one number, but {symbol} is the ball {number}.  Put it on an "
+                           "axis, or give a number.")
+    return sympy.Rational(int(number.p), int(number.q))
+
+
+def _axis(given: Any, name: str) -> Axis:
+    if not isinstance(given, tuple | list) or len(given) != 3 or not isinstance(given[0], Symbol):
+        raise BadTypeError(f"{name} must be (Symbol, lo, hi), but it is {given!r}.  Use {name}=(a, -1, 5), say.")
+    symbol, lo, hi = given[0], *(float(_float(end, f"an end of {given[0]}")) for end in given[1:])
+    if not lo < hi:
+        raise BadInputError(f"{name} must be an interval with lo < hi, but it is {given!r}.  Exchange the ends.")
+    return Axis(symbol, lo, hi)
+
+
+def _float(value: Any, what: str) -> float:
+    number = exact_number(value, what)
+    return float(number.p) / float(number.q) if hasattr(number, "p") else float(number)
+
+
+def _member(mode: Mapping[Symbol, Any], numbers: Mapping[Symbol, Expr], x: Symbol, y: Symbol) -> Member:
+    if not isinstance(mode, Mapping):
+        raise BadTypeError(f"every mode maps the parameters of P to expressions, but one is {mode!r}.  "
+                           "Use [{a: -mu/v**2, b: mu*h} for mu in ...].")
+    result = {}
+    for symbol, value in mode.items():
+        expression = sympy.expand(as_expression(value, f"the value of {symbol}").xreplace(dict(numbers)))
+        terms: dict[Expr, Expr] = {}
+        for term in sympy.Add.make_args(expression):
+            number, monomial = term.as_independent(x, y, as_Add=False)
+            terms[monomial] = terms.get(monomial, sympy.Integer(0)) + number
+        monomial, coefficient = next(iter(terms.items()))
+        powers = dict(monomial.as_powers_dict())
+        powers.pop(sympy.Integer(1), None)
+        whole = set(powers) <= {x, y} and all(e.is_Integer for e in powers.values())
+        if len(terms) > 1 or coefficient.free_symbols or not whole:
+            raise BadInputError(f"the parameters of a mode must be numbers times powers of {x} and {y}, but {symbol} "
+                                f"is {expression}.  Fix the other symbols.")
+        result[symbol] = coefficient, (int(powers.get(x, 0)), int(powers.get(y, 0)))
+    return result
+
+
+def _with_power(axis: Axis, exponents: list[int]) -> Axis:
+    used = {e for e in exponents if e}
+    if not used:
+        return axis
+    if min(used) < 0 < max(used):
+        raise BadInputError(f"a chart needs powers of {axis.symbol} of one sign, but {sorted(used)} occur.  Multiply "
+                            "the time by a power of it, or name its reciprocal by a symbol of its own.")
+    power = int(math.copysign(gcd(*used), max(used, key=abs)))
+    if power < 0 and axis.lo <= 0:
+        raise BadInputError(f"P contains a negative power of {axis.symbol}, so its interval must be positive, but it "
+                            f"is [{axis.lo}, {axis.hi}].  Begin above 0.")
+    if power > 1 and axis.lo < 0:
+        power = 1
+    return Axis(axis.symbol, axis.lo, axis.hi, power)

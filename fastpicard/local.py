@@ -1,0 +1,239 @@
+r"""From one exact polynomial to a Taylor model on every rectangle of a chart.
+
+On a rectangle with centre ``(c, c')`` and half sides ``(r, r')`` the polynomial ``f = sum F_ij u**i w**j`` is
+
+    f(c + r s, c' + r' t) = sum L_kl s**k t**l,        L = S(c, r) F S(c', r')^T,
+    S(c, r)_ki = binomial(i, k) c**(i-k) r**k,
+
+two products of matrices.  They are computed in balls, since the terms of F cancel, and each of the few L_kl kept is
+rounded to a float; what is rounded, and the balls' radii, go into the error.  The same with absolute values everywhere,
+
+    |L| <= S(|c|, r) |F| S(|c'|, r')^T    entry by entry,
+
+has positive terms only, so float64 is enough, and its entries beyond the degree kept bound what is left out.
+
+The true Floquet matrix differs from the iterate by at most the a-priori remainder ``sum over k > n of
+(Pbar T)**k / k!`` (module ``remainder``), with Pbar the largest amplitudes on all rectangles together.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from flint import arb, arb_mat, ctx
+
+from fastpicard.charted import Axis, Charted, Exponents, Member
+from fastpicard.evaluate import numpy, upper_float
+from fastpicard.harmonics import Harmonics
+from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
+
+Array = Any
+BITS = 160  # of the polynomials: what cancels in them, and float64
+
+
+class Rectangles:
+    """Rectangles in ``(u, w)``: centres and half sides as floats, the sides rounded up.
+
+    Attributes
+    ----------
+    center, half : arrays, shape (2, m)
+    """
+
+    def __init__(self, lower: Array, upper: Array) -> None:
+        np = numpy()
+        self.lower, self.upper = lower, upper
+        self.center = (lower + upper) / 2
+        self.half = np.nextafter(np.maximum(upper - self.center, self.center - lower) * (1 + 4 * UNIT), np.inf)
+
+    def __len__(self) -> int:
+        return int(self.center.shape[1])
+
+    def at(self, places: Array) -> Rectangles:
+        """Some of them."""
+        return Rectangles(self.lower[:, places], self.upper[:, places])
+
+
+def shortened(u: Array, away: Array | None = None) -> Array:
+    """Numbers of 24 bits near ``u``: then all halvings of the rectangles between them are exact.
+
+    Where ``away`` is 1 or -1 they are rounded up or down, by a few ulp of a float more than need be.
+    """
+    np = numpy()
+    mantissa, exponent = np.frexp(u)
+    scaled = np.ldexp(mantissa, 24)
+    if away is not None:
+        scaled = np.where(away > 0, np.ceil(scaled + 2.0**-20), np.where(away < 0, np.floor(scaled - 2.0**-20), scaled))
+    return np.ldexp(np.round(scaled), exponent - 24)
+
+
+def grid(axes: tuple[Axis, Axis], edges: tuple[Array, Array]) -> Rectangles:
+    """The rectangles between edges given in the parameters of the chart; at its rim they may reach a little beyond."""
+    np = numpy()
+    sides = []
+    for axis, line in zip(axes, edges, strict=True):
+        inner = np.sort(axis.inner(line))
+        away = np.zeros(len(inner))
+        away[0], away[-1] = -1, 1
+        if axis.power == 1:  # ends of 24 bits are exact
+            away[[0, -1]] = np.where(shortened(inner[[0, -1]]) == inner[[0, -1]], 0, away[[0, -1]])
+        inner = shortened(inner, away)
+        sides.append((inner[:-1], inner[1:]))
+    lower, upper = (np.stack([a.ravel() for a in np.meshgrid(sides[0][k], sides[1][k], indexing="ij")])
+                    for k in (0, 1))
+    return Rectangles(lower, upper)
+
+
+# -- ranges --------------------------------------------------------------------
+
+
+def span(terms: dict[Exponents, Any], boxes: Rectangles) -> tuple[Array, Array]:
+    """Bounds from below and above of a polynomial of few terms on rectangles: interval arithmetic."""
+    np = numpy()
+    low, high, size = (np.zeros(len(boxes)) for _ in range(3))
+    for (i, j), c in terms.items():
+        value = float(c.mid())
+        ends = _product(_power(boxes.lower[0], boxes.upper[0], i), _power(boxes.lower[1], boxes.upper[1], j))
+        ends = _product(ends, (np.full(len(boxes), value), np.full(len(boxes), value)))
+        low, high = low + ends[0], high + ends[1]
+        size = size + np.maximum(abs(ends[0]), abs(ends[1]))
+    lost = size * 2.0**-40 + 2.0**-1000
+    return low - lost, high + lost
+
+
+def _power(lower: Array, upper: Array, k: int) -> tuple[Array, Array]:
+    np = numpy()
+    if k == 0:
+        return np.ones_like(lower), np.ones_like(lower)
+    low, high = lower**k, upper**k
+    if k % 2:
+        return low, high
+    least = np.where((lower < 0) & (upper > 0), 0.0, np.minimum(low, high))
+    return least, np.maximum(low, high)
+
+
+def _product(x: tuple[Array, Array], y: tuple[Array, Array]) -> tuple[Array, Array]:
+    np = numpy()
+    ends = [x[i] * y[j] for i in (0, 1) for j in (0, 1)]
+    return np.minimum.reduce(ends), np.maximum.reduce(ends)
+
+
+def amplitudes(chart: Charted, member: Member, boxes: Rectangles) -> Array:
+    """``sup |P_ij|`` on every rectangle: shape (size, size, m)."""
+    np = numpy()
+    bound = np.zeros((*chart.F.shape, len(boxes)))
+    for (i, j), waves in chart.waves(member).items():
+        for terms in waves.values():
+            low, high = span(terms, boxes)
+            bound[i, j] += np.maximum(abs(low), abs(high))
+    return bound * SLACK
+
+
+def convex(chart: Charted, member: Member, boxes: Rectangles) -> Array:
+    """Where ``y'' = q(t) y`` has ``q > 0`` at all times: unstable.
+
+    The solution with y(0) = 1, y'(0) = 0 has ``y'' > 0`` while y > 0, so y' grows and y stays above 1 for good.
+    """
+    np = numpy()
+    waves = chart.waves(member)
+    one = waves.get((0, 1), {})
+    plain = len(one) == 1 and next(iter(one))[1] == ((), ()) and all(
+        set(terms) == {(0, 0)} and bool(terms[0, 0] > 0) for terms in one.values())
+    if chart.F.shape != (2, 2) or (0, 0) in waves or (1, 1) in waves or not plain or (1, 0) not in waves:
+        return np.zeros(len(boxes), dtype=bool)
+    low = np.zeros(len(boxes))
+    for (_, angle), terms in waves[1, 0].items():
+        least, most = span(terms, boxes)
+        low += least if angle == ((), ()) else -np.maximum(abs(least), abs(most))
+    return low > 0
+
+
+def common_bound(bounds: list[Array]) -> Harmonics:
+    """A constant system that majorises all members on all rectangles."""
+    np = numpy()
+    largest = np.max([b.max(axis=-1) for b in bounds], axis=0)
+    size = largest.shape[0]
+    return Harmonics(size, {(i, j): [(arb(0), arb(float(largest[i, j])), arb(0))]
+                            for i in range(size) for j in range(size) if largest[i, j]})
+
+
+# -- models --------------------------------------------------------------------
+
+
+class LocalMap:
+    """Several polynomials in ``(u, w)``, recentred on rectangles.
+
+    Parameters
+    ----------
+    polynomials : list of {(i, j): ball}
+    errors : list of floats      how far each may be from the function it stands for
+    """
+
+    def __init__(self, polynomials: list[dict[Exponents, Any]], errors: list[float]) -> None:
+        np = numpy()
+        self.shape = tuple(1 + max((e[k] for terms in polynomials for e in terms), default=0) for k in (0, 1))
+        self.errors = errors
+        with ctx.workprec(BITS):
+            self.matrices = [arb_mat([[terms.get((i, j), arb(0)) for j in range(self.shape[1])]
+                                      for i in range(self.shape[0])]) for terms in polynomials]
+        self.sizes = np.zeros((len(polynomials), *self.shape))
+        for e, terms in enumerate(polynomials):
+            for (i, j), c in terms.items():
+                self.sizes[e, i, j] = upper_float(abs(c).upper())
+        self._shifts: dict[tuple[float, float, int, int], Any] = {}
+
+    def models(self, boxes: Rectangles, degree: int) -> Models:
+        """Taylor models: shape (size, polynomials, m)."""
+        np = numpy()
+        terms = exponents(degree)
+        c = np.zeros((len(terms), len(self.matrices), len(boxes)))
+        radii = np.zeros((len(self.matrices), len(boxes)))
+        with ctx.workprec(BITS):
+            rows: dict[tuple[float, float], list[Any]] = {}
+            for m in range(len(boxes)):
+                (x, y), (r, q) = boxes.center[:, m].tolist(), boxes.half[:, m].tolist()
+                if (x, r) not in rows:
+                    rows[x, r] = [self._shift(x, r, degree, 0) * matrix for matrix in self.matrices]
+                right = self._shift(y, q, degree, 1).transpose()
+                for e, left in enumerate(rows[x, r]):
+                    table = (left * right).tolist()
+                    kept = [table[k][l] for k, l in terms]
+                    c[:, e, m] = [float(z) for z in kept]
+                    radii[e, m] = float(sum(map(abs, kept), arb(0)).rad()) * 2
+        beyond = self.beyond(boxes, degree)
+        e = beyond + radii + 2 * UNIT * abs(c).sum(axis=0) + np.array(self.errors)[:, None]
+        return Models(degree, c, e * SLACK)
+
+    def _shift(self, c: float, r: float, degree: int, axis: int) -> Any:
+        key = c, r, degree, axis
+        if key not in self._shifts:
+            n = self.shape[axis]
+            centre, half = arb(c), arb(r)
+            powers = [centre**i if i else arb(1) for i in range(n)]
+            self._shifts[key] = arb_mat([[powers[i - k] * math.comb(i, k) * half**k if i >= k else arb(0)
+                                          for i in range(n)] for k in range(degree + 1)])
+        return self._shifts[key]
+
+    def beyond(self, boxes: Rectangles, degree: int) -> Array:
+        """``sum over k + l > degree of |L_kl|``, from above: shape (polynomials, m)."""
+        np = numpy()
+        result = np.zeros((len(self.matrices), len(boxes)))
+        for start in range(0, len(boxes), 256):
+            part = slice(start, start + 256)
+            left, right = (self._majorants(boxes.center[k, part], boxes.half[k, part], k) for k in (0, 1))
+            total = np.add.outer(np.arange(self.shape[0]), np.arange(self.shape[1]))
+            for e, sizes in enumerate(self.sizes):
+                table = np.matmul(np.matmul(left, sizes), right.transpose(0, 2, 1))
+                result[e, part] = np.where(total > degree, table, 0.0).sum(axis=(1, 2))
+        return result * (1 + 2.0**-30)
+
+    def _majorants(self, c: Array, r: Array, axis: int) -> Array:
+        """``binomial(i, k) |c|**(i-k) r**k``: shape (m, n, n)."""
+        np = numpy()
+        n = self.shape[axis]
+        table = np.zeros((len(c), n, n))
+        table[:, 0, 0] = 1.0
+        for i in range(1, n):
+            table[:, :, i] = abs(c)[:, None] * table[:, :, i - 1]
+            table[:, 1:, i] += r[:, None] * table[:, :-1, i - 1]
+        return table

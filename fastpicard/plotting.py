@@ -1,0 +1,95 @@
+"""Pictures of charts: the one file of this package that needs matplotlib, and only when a picture is asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastpicard.evaluate import numpy
+
+STABLE, UNSTABLE, UNDECIDED, ERROR = "#8fbf8f", "#f4f1ea", "#000000", "#b0b0b0"
+
+
+def pyplot() -> Any:
+    """matplotlib.pyplot, imported when the first picture is drawn."""
+    import matplotlib.pyplot as module
+
+    return module
+
+
+def _axes(ax: Any) -> Any:
+    if ax is not None:
+        return ax
+    _, ax = pyplot().subplots(figsize=(8, 5.5), constrained_layout=True)
+    return ax
+
+
+def _finish(ax: Any, x: Any, y: Any, xlabel: str | None, ylabel: str | None, title: str | None) -> Any:
+    ax.set(xlim=(x.lo, x.hi), ylim=(y.lo, y.hi), xlabel=xlabel or f"${x.symbol}$", ylabel=ylabel or f"${y.symbol}$")
+    if title:
+        ax.set_title(title)
+    return ax
+
+
+def _key(ax: Any, entries: list[tuple[str, str]]) -> None:
+    from matplotlib.patches import Patch
+
+    ax.legend(handles=[Patch(facecolor=colour, edgecolor="0.5", label=label) for colour, label in entries],
+              loc="upper right", fontsize=9, framealpha=0.9)
+
+
+def certified(chart: Any, ax: Any, xlabel: str | None, ylabel: str | None, title: str | None) -> Any:
+    """A certified chart on a raster: a pixel is painted black if any part of it is undecided."""
+    ax = _axes(ax)
+    codes = raster(chart, 1200, 900)
+    colours = numpy().array([_rgb(colour) for colour in (UNSTABLE, UNDECIDED, STABLE)])
+    ax.imshow(colours[codes.T + 1], origin="lower", aspect="auto", interpolation="nearest",
+              extent=(chart.x.lo, chart.x.hi, chart.y.lo, chart.y.hi))
+    for tube in chart.tubes:
+        ax.plot(*tube.points(), color="#30549c", linewidth=0.8)
+    _key(ax, [(STABLE, "stable, proved"), (UNSTABLE, "unstable, proved"),
+              (UNDECIDED, f"undecided: {chart.undecided:.1e} of the area")])
+    return _finish(ax, chart.x, chart.y, xlabel, ylabel, title)
+
+
+def _rgb(colour: str) -> tuple[float, ...]:
+    from matplotlib.colors import to_rgb
+
+    return tuple(to_rgb(colour))
+
+
+def raster(chart: Any, width: int, height: int) -> Any:
+    """Codes of pixels, shape (width, height): what all of a pixel is proved to be, else 0."""
+    np = numpy()
+    x, y, cells = chart.x, chart.y, chart.cells
+    places = [np.clip(np.round((cells[:, k] - axis.lo) / (axis.hi - axis.lo) * n, 9), 0, n)
+              for k, axis, n in ((0, x, width), (1, x, width), (2, y, height), (3, y, height))]
+    first = [np.minimum(np.floor(p), n - 1).astype(int) for p, n in zip(places[::2], (width, height), strict=True)]
+    last = [np.maximum(np.ceil(p), f + 1).astype(int) for p, f in zip(places[1::2], first, strict=True)]
+    marks = {code: np.zeros((width + 1, height + 1), dtype=np.int32) for code in (1, 0, -1)}
+    for code, mark in marks.items():  # each rectangle of pixels as four corners of a sum over the plane
+        chosen = chart.codes == code
+        a, b, c, d = first[0][chosen], last[0][chosen], first[1][chosen], last[1][chosen]
+        for i, j, sign in ((a, c, 1), (b, c, -1), (a, d, -1), (b, d, 1)):
+            np.add.at(mark, (i, j), sign)
+    touched = {code: mark.cumsum(axis=0).cumsum(axis=1)[:width, :height] > 0 for code, mark in marks.items()}
+    result = np.where(touched[1], 1, -1)
+    return np.where(touched[0] | (touched[1] & touched[-1]), 0, result)
+
+
+def sampled(data: Any, ax: Any, xlabel: str | None, ylabel: str | None, title: str | None) -> Any:
+    """A chart of points: stable and unstable shaded, undecided black, the boundary as the zero line of the margin."""
+    ax = _axes(ax)
+    names = [str(name) for name in data["verdict"].dims]
+    x, y = (data[name].values for name in (names[1], names[0]))
+    colours = numpy().array([_rgb(colour) for colour in (UNSTABLE, UNDECIDED, STABLE)])
+    dx, dy = (x[1] - x[0]) / 2, (y[1] - y[0]) / 2
+    ax.imshow(colours[data["verdict"].values.astype(int) + 1], origin="lower", aspect="auto", interpolation="nearest",
+              extent=(x[0] - dx, x[-1] + dx, y[0] - dy, y[-1] + dy))
+    margin = data["margin"].values
+    if (margin > 0).any() and (margin < 0).any():
+        ax.contour(x, y, margin, levels=[0.0], colors="#30549c", linewidths=0.8)
+    _key(ax, [(STABLE, "stable"), (UNSTABLE, "unstable"), (UNDECIDED, "undecided")])
+    ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=xlabel or f"${names[1]}$", ylabel=ylabel or f"${names[0]}$")
+    if title:
+        ax.set_title(title)
+    return ax

@@ -1,0 +1,191 @@
+"""Certified charts: no rectangle contradicts the truth at a point, whatever the criterion."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from flint import arb
+from hypothesis import given, settings, strategies as st
+from sympy import Matrix, Rational, cos, sin, sqrt
+from sympy.abc import a, b, c, h, t, v
+
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, Verdict
+from fastpicard.certify import certify
+from fastpicard.local import LocalMap, Rectangles
+from fastpicard.taylormodels import Models, exponents, size
+
+MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 0)
+ONE_ROD = FloquetMatrix(Matrix([[0, 1], [Rational(3, 2) / v**2 - Rational(3, 2) * h * cos(t), 0]]), t, 0)
+GENERATOR = np.random.default_rng(20)
+
+
+def second_order(S, D=None):
+    """x'' + D x' + S x = 0 as a system of first order."""
+    n = S.rows
+    D = Matrix.zeros(n) if D is None else D
+    return Matrix.zeros(n).row_join(Matrix.eye(n)).col_join((-S).row_join(-D))
+
+
+def disagreements(chart, F, count, fixed=None, matrix=None):
+    """Random decided cells, a random point in each, and whether ball Taylor contradicts the verdict there."""
+    decided = np.flatnonzero(chart.codes)
+    weights = chart.areas[decided] ** 0.5
+    chosen = GENERATOR.choice(decided, size=count, p=weights / weights.sum())
+    found = []
+    for k in chosen:
+        x0, x1, y0, y1 = chart.cells[k]
+        at = {chart.x.symbol: float(GENERATOR.uniform(x0, x1)), chart.y.symbol: float(GENERATOR.uniform(y0, y1))}
+        true = F.verdict({**at, **(fixed or {})})
+        if int(true) * chart.codes[k] < 0:
+            found.append((at, int(true), chart.codes[k]))
+    return found
+
+
+@pytest.mark.parametrize("F, x, y, fixed", [
+    (MATHIEU, (a, -1, 5), (b, 0, 6), {}),
+    (ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), {}),
+    (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - c * cos(2 * t), 0]]), t, 0), (a, -1, 2), (b, -1, 2), {c: 1}),
+    (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - sin(2 * t) / 3, 0]]), t, 0), (a, -1, 2), (b, 0, 1), {}),
+    (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 0), (a, -0.5, 2), (b, 0, 2), {c: Rational(1, 5)}),
+    (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 0), (c, -0.1, 1), (b, 0, 2), {a: Rational(1, 4)}),
+], ids=["Mathieu", "one rod", "two waves", "not reversible", "damped", "damping as axis"])
+def test_certified_cells_never_contradict_ball_taylor(F, x, y, fixed):
+    """The verdict on random points in random cells, by the true equation integrated in balls."""
+    chart = certify(F, x, y, fixed=fixed, undecided=2e-3, seconds=60)
+
+    assert chart.undecided < 2e-3
+    assert not disagreements(chart, F, 60, fixed)
+
+
+def test_cells_tile_the_chart():
+    """Areas add up, and a random point lies in one cell."""
+    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), undecided=1e-2)
+    points = np.stack([GENERATOR.uniform(0, 0.5, 200), GENERATOR.uniform(0.1, 100, 200)])
+    cells = chart.cells
+    inside = ((cells[:, 0] <= points[0][:, None]) & (points[0][:, None] <= cells[:, 1])
+              & (cells[:, 2] <= points[1][:, None]) & (points[1][:, None] <= cells[:, 3]))
+
+    parts = [chart.fraction(verdict) for verdict in (Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED)]
+    assert sum(parts) == pytest.approx(1, abs=1e-12)
+    assert (inside.sum(axis=1) == 1).all()
+
+
+@pytest.mark.parametrize("hh, vv, verdict", [
+    ("1/10", "12", 1), ("3/10", "3", -1), ("2/5", "5", -1), ("1/100", "100", -1), ("1/5", "40", 1),
+    ("3/20", "42339/5000", 1),
+])
+def test_reference_points_of_one_rod(hh, vv, verdict):
+    """Points whose traces are known to thirty digits; the article's (0.2, 40) among them."""
+    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), undecided=1e-3)
+
+    assert int(chart.verdict(Fraction(hh), Fraction(vv))) == verdict
+
+
+def test_two_rods_from_one_scalar_matrix():
+    """mu = 3 -+ 6/sqrt(7): points of the reference set, and the two-rod system itself at random points."""
+    modes = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))]
+    chart = certify(MATHIEU, (h, 0, 0.1), (v, 0.1, 100), modes=modes, undecided=5e-4)
+    S = Matrix([[18, -9], [-27, 24]]) / 7 * (-1 / v**2 + h * cos(t))
+    coupled = FloquetMatrix(second_order(S), t, 0)
+
+    for hh, vv, verdict in (("1/50", "901/10", 1), ("3/50", "28", 1), ("9/100", "301/10", -1), ("2/25", "30", 1)):
+        assert int(chart.verdict(Fraction(hh), Fraction(vv))) == verdict
+    assert not disagreements(chart, coupled, 15)
+
+
+def test_below_one_everything_is_unstable_by_convexity():
+    """h v**2 < 1: no iterate is needed."""
+    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.01, 1.4))
+
+    assert (chart.fraction(Verdict.UNSTABLE), chart.order) == (pytest.approx(1), 0)
+
+
+def test_progress_is_reported():
+    """A function is called with the time and the part that is undecided."""
+    seen = []
+    certify(MATHIEU, (a, 0, 1), (b, 0, 1), undecided=1e-3, progress=lambda *report: seen.append(report))
+
+    assert all(0 <= part <= 1 for _, part in seen)
+
+
+@pytest.mark.parametrize("x, y, more, error, words", [
+    ((a, 1, 0), (b, 0, 1), {}, BadInputError, "lo < hi"),
+    ((a, 0, 1), (a, 0, 1), {}, BadInputError, "different"),
+    (("a", 0, 1), (b, 0, 1), {}, BadTypeError, "Symbol"),
+    ((a, 0, 1), (h, 0, 1), {}, MissingParameterError, "fixed"),
+    ((h, 0, 1), (v, 0, 1), {"modes": [{a: -1 / v**2, b: h}]}, BadInputError, "positive"),
+    ((h, 0, 1), (v, 1, 2), {"modes": [{a: -1 / v**2 + h, b: h}]}, BadInputError, "powers"),
+])
+def test_what_is_no_chart_is_refused(x, y, more, error, words):
+    """With what would do."""
+    with pytest.raises(error, match=words):
+        certify(MATHIEU, x, y, **more)
+
+
+# -- Taylor models ---------------------------------------------------------------
+
+dyadic = st.integers(-256, 256).map(lambda k: Fraction(k, 64))
+coefficients = st.lists(dyadic, min_size=size(3), max_size=size(3))
+units = st.fractions(-1, 1, max_denominator=64)
+
+
+def model(numbers):
+    """A model of degree 3 whose coefficients are exact floats."""
+    return Models(3, np.array([float(x) for x in numbers])[:, None], np.zeros(1))
+
+
+def exact(numbers, s, u):
+    """The polynomial's value in fractions."""
+    return sum(x * s**k * u**l for x, (k, l) in zip(numbers, exponents(3), strict=True))
+
+
+def enclosed(m, s, u, value):
+    """Whether a value of the function is within the model's error."""
+    numbers = [Fraction(float(x)) for x in m.c[:, 0]]
+    return abs(exact(numbers, s, u) - value) <= Fraction(float(m.e[0]))
+
+
+@settings(max_examples=200)
+@given(coefficients, coefficients, units, units)
+def test_models_contain_sums_and_products(f, g, s, u):
+    """In exact fractions."""
+    x, y = exact(f, s, u), exact(g, s, u)
+
+    assert enclosed(model(f) + model(g), s, u, x + y)
+    assert enclosed(model(f) - model(g), s, u, x - y)
+    assert enclosed(model(f) * model(g), s, u, x * y)
+    assert enclosed(model(f) * 0.3, s, u, x * Fraction(0.3))
+    assert enclosed(model(f).truncated(3), s, u, x)
+
+
+@settings(max_examples=200)
+@given(coefficients, units, units, st.booleans(), st.booleans())
+def test_halves_are_the_same_function(f, s, u, along_y, upper):
+    """On a half the function is that of the whole at the point."""
+    half = model(f).halved(along_y, upper)
+    sign = 1 if upper else -1
+    where = (s, (u + sign) / 2) if along_y else ((s + sign) / 2, u)
+
+    assert enclosed(half, s, u, exact(f, *where))
+
+
+@settings(max_examples=100)
+@given(coefficients, units, units)
+def test_a_sign_is_the_sign(f, s, u):
+    """What signs() proves holds at every point."""
+    assert int(model(f).signs()[0]) * exact(f, s, u) >= 0
+
+
+@settings(max_examples=50)
+@given(st.lists(st.integers(-9, 9), min_size=16, max_size=16), st.fractions(-2, 2, max_denominator=8),
+       st.fractions(-2, 2, max_denominator=8), units, units)
+def test_local_models_contain_the_polynomial(numbers, x, y, s, u):
+    """Recentred on [x, x + 1/2] x [y, y + 1/4]; degrees 3 and 3, of which the model keeps three in all."""
+    terms = {(i, j): arb(numbers[4 * i + j]) for i in range(4) for j in range(4)}
+    lower = np.array([[float(x)], [float(y)]])
+    boxes = Rectangles(lower, lower + np.array([[0.5], [0.25]]))
+    found = LocalMap([terms], [0.0]).models(boxes, 3)
+    at = [Fraction(float(boxes.center[k, 0])) + z * Fraction(float(boxes.half[k, 0])) for k, z in ((0, s), (1, u))]
+    value = sum(numbers[4 * i + j] * at[0]**i * at[1]**j for i in range(4) for j in range(4))
+
+    assert enclosed(Models(3, found.c[:, 0], found.e[0]), s, u, value)
