@@ -14,12 +14,13 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import accumulate
+from threading import local
 from typing import Any
 
 import numpy as np
 from sympy import Rational
 
-from .angles import LARGEST, sines_of_large_joints
+from .angles import sines_of_large_joints
 from .arithmetic import Arithmetic, arithmetic_of
 from .constants import (
     NAMES,
@@ -43,6 +44,7 @@ from .single import single_bobs, single_rods
 __all__ = ["CompiledChain"]
 
 MODELS = ("bobs", "rods")
+LONG = 10_000
 FLOAT64 = np.dtype(np.float64)
 LIGHT = 1e-40  # of the largest mass: stands for no mass, and no float64 result can tell
 
@@ -91,6 +93,7 @@ class CompiledChain:
         columns = [column(values, name) for values, name in zip((mass, length, center, gyration), NAMES, strict=True)]
         self._columns = checked(columns)
         self._count = len(self._columns[0])
+        self._kept = local()
         self.gravity = quantity(gravity, "gravity")
         self.support: Shaking = shaking_of(support_acceleration)
         self._joints = [joint_constants(values, name, len(self)) for values, name in
@@ -230,22 +233,27 @@ class CompiledChain:
     def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> bool:
         if not has_numba():
             return self._many(theta, omega, ax, ay, out)
+        space = np.empty(7 * self._count) if self._count < LONG else self._space()
         if self.model == "bobs":
-            return machine(single_bobs)(self.bobs, theta, omega, ax, ay, out)  # type: ignore[no-any-return]
+            return machine(single_bobs)(self.bobs, theta, omega, ax, ay, space, out)  # type: ignore[no-any-return]
         tau = self.torques(theta, omega) if self.has_torques else None
-        return machine(single_rods)(self.rods, theta, omega, tau, ax, ay, out)  # type: ignore[no-any-return]
+        return machine(single_rods)(self.rods, theta, omega, tau, ax, ay, space, out)  # type: ignore[no-any-return]
+
+    def _space(self) -> Any:
+        """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""
+        if not hasattr(self._kept, "space"):
+            self._kept.space = np.empty(7 * self._count)
+        return self._kept.space
 
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> bool:
         tau, n = self.torques(theta, omega), len(self)
-        if has_numba() and abs(theta).max(initial=0.0) < LARGEST / 2:
-            work = np.empty((n, 6 * LANES))
-            machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, out)
-        else:
-            s, c = np.empty_like(theta), np.empty_like(theta)
-            with np.errstate(all="ignore"):
-                sines_of_large_joints(theta, s, c)
-                work = np.empty((n, 4, *theta.shape[1:]))
-                accelerate_rods(self.rods, omega * omega, tau, s, c, ax, ay, work, out)
+        if has_numba() and theta.ndim == 2 and machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay,
+                                                                         np.empty((n, 6 * LANES)), out):
+            return True
+        s, c = np.empty_like(theta), np.empty_like(theta)
+        with np.errstate(all="ignore"):
+            sines_of_large_joints(theta, s, c)
+            accelerate_rods(self.rods, omega * omega, tau, s, c, ax, ay, np.empty((n, 4, *theta.shape[1:])), out)
         return bool(np.isfinite(out).all())
 
     def torques(self, theta: Any, omega: Any) -> Any:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .angles import difference, sines
+from .angles import LARGEST, difference, sines
 from .recursion import force, inertia, torque, turned_force, turned_inertia
 
 __all__ = ["LANES", "accelerate_lanes"]
@@ -20,14 +20,15 @@ __all__ = ["LANES", "accelerate_lanes"]
 LANES = 32
 
 
-def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:
-    """Write ``theta''`` of all chains to ``out``; float64 only.
+def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, out: Any) -> bool:
+    """Write ``theta''`` of all chains to ``out``, float64 only; whether all are finite and all angles small enough.
 
     Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 6 * LANES).  All chains are
-    on one support, with acceleration ``(ax, ay)``.  Angles at most :data:`lagrangian.angles.LARGEST` / 2.
+    on one support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
     held = np.empty(8 * LANES)
+    wrong = 0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
         held[:] = 0.0
@@ -43,6 +44,8 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
             else:
                 for j in range(width):
                     o[3 * LANES + j], o[4 * LANES + j] = sines(here[j], 0.0)
+            for j in range(width):
+                wrong += abs(here[j]) > 0.5 * LARGEST
             m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
             J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
             rate = omega[k, first:first + width]
@@ -82,3 +85,6 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 tn = o[j] * an - (o[2 * LANES + j] + o[LANES + j] * tu)
                 result[j] = -(o[5 * LANES + j] * an + (o[2 * LANES + j] + o[LANES + j] * tu) * per_length)
                 held[j], held[LANES + j] = tu, tn
+            for j in range(width):
+                wrong += 0.0 * result[j] != 0.0
+    return wrong == 0

@@ -44,19 +44,22 @@ def finite(out: Any) -> bool:
     return total == 0.0
 
 
-def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, out: Any) -> bool:
-    """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite.  ``tau`` is (n,) or None."""
+def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, space: Any, out: Any) -> bool:
+    """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite.
+
+    ``tau`` is (n,) or None; ``space``, (7 n,), is for intermediate values.
+    """
     n = theta.shape[0]
-    s, c, z, work = np.empty(n), np.empty(n), np.empty(n), np.empty((n, 4))
+    s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:7 * n].reshape(n, 4)
     joint_sines(theta, omega, s, c, z)
     accelerate_rods(rods, z, tau, s, c, ax, ay, work, out)
     return finite(out)
 
 
-def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> bool:
+def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, space: Any, out: Any) -> bool:
     """The same for bobs."""
     n = theta.shape[0]
-    s, c, z, work = np.empty(n), np.empty(n), np.empty(n), np.empty((n, 2))
+    s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:5 * n].reshape(n, 2)
     joint_sines(theta, omega, s, c, z)
     accelerate_bobs(bobs, z, s, c, ax, ay, work, out)
     return finite(out)
