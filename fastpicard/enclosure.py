@@ -227,13 +227,14 @@ def _number(x: int, bits: int) -> Any:
 def _solve(rows: list[list[tuple[int, list[Any]]]], bits: int) -> list[Rows]:
     """The Taylor polynomial, a list of integers for each entry of each column, until four orders add nothing."""
     size = len(rows)
+    sparse = [[(j, *_without_zeros(coefficients)) for j, coefficients in row] for row in rows]
     one = _number(1 << bits, bits)
     columns: list[Rows] = [[[one if i == j else 0 * one] for i in range(size)] for j in range(size)]
     k, quiet = 0, 0
     while quiet < 4 and k < MOST_ORDERS:
         largest = 0
         for found in columns:
-            new = [(_next(row, found, k) >> bits) // (k + 1) for row in rows]
+            new = [(_next(row, found, k) >> bits) // (k + 1) for row in sparse]
             largest = max(largest, *map(abs, new))
             for entry, value in zip(found, new, strict=True):
                 entry.append(value)
@@ -242,14 +243,22 @@ def _solve(rows: list[list[tuple[int, list[Any]]]], bits: int) -> list[Rows]:
     return columns
 
 
-def _next(row: list[tuple[int, list[Any]]], found: Rows, k: int) -> Any:
+def _without_zeros(coefficients: list[Any]) -> tuple[int, int, list[Any]]:
+    """``(first, step, coefficients[first::step])``: even and odd functions have every second coefficient only."""
+    for first, other in ((0, 1), (1, 0)):
+        if not any(coefficients[other::2]):
+            return first, 2, coefficients[first::2]
+    return 0, 1, coefficients
+
+
+def _next(row: list[tuple[int, int, int, list[Any]]], found: Rows, k: int) -> Any:
     """Coefficient ``k`` of one entry of ``P F``, times ``4**bits``."""
     total = 0
-    for j, coefficients in row:
-        if len(coefficients) == 1:
-            total += coefficients[0] * found[j][k]
-        else:
-            total += sum(map(mul, coefficients, found[j][k::-1]))
+    for j, first, step, coefficients in row:
+        if len(coefficients) == 1 and first <= k:
+            total += coefficients[0] * found[j][k - first]
+        elif first <= k:
+            total += sum(map(mul, coefficients, found[j][k - first::-step]))
     return total
 
 
