@@ -96,6 +96,7 @@ class CompiledChain:
         self._kept = local()
         self.gravity = quantity(gravity, "gravity")
         self.support: Shaking = shaking_of(support_acceleration)
+        self._steady = self.support.steady
         self._joints = [joint_constants(values, name, len(self)) for values, name in
                         ((damping, "damping"), (springs, "springs"))]
         check_joints(self._columns[0], self._joints)
@@ -212,10 +213,13 @@ class CompiledChain:
             arithmetic = arithmetic_of(t, theta, omega)
             if arithmetic is not None:
                 return self._in_arithmetic(arithmetic, t, theta, omega)
-        theta, omega = _state(theta, "theta", self._count), _state(omega, "omega", self._count)
-        if theta.shape != omega.shape:
-            raise SceneError(f"theta has shape {theta.shape} and omega {omega.shape}: give both the same shape.")
-        ax, ay = self._steady_pull if self.support.steady else map(float, self.pull(t))
+        shape = (self._count,)
+        if not (_is_plain(theta, omega) and theta.shape == shape == omega.shape and theta.flags.c_contiguous
+                and omega.flags.c_contiguous):
+            theta, omega = _state(theta, "theta", self._count), _state(omega, "omega", self._count)
+            if theta.shape != omega.shape:
+                raise SceneError(f"theta has shape {theta.shape} and omega {omega.shape}: give both the same shape.")
+        ax, ay = self._steady_pull if self._steady else map(float, self.pull(t))
         out = np.empty_like(theta)
         if not (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out):
             raise QuantityError(_no_answer(t, theta, omega))
@@ -329,9 +333,9 @@ def _torques(theta: Any, omega: Any, damping: Any, springs: Any) -> Any:
     return tau
 
 
-def _is_plain(*arrays: Any) -> bool:
-    """Whether all are float64 arrays, the common case, of which nothing else need be asked."""
-    return all(type(x) is np.ndarray and x.dtype is FLOAT64 for x in arrays)
+def _is_plain(theta: Any, omega: Any) -> bool:
+    """Whether both are float64 arrays, the common case, of which nothing else need be asked."""
+    return type(theta) is np.ndarray is type(omega) and theta.dtype is FLOAT64 is omega.dtype
 
 
 def _state(values: Any, name: str, n: int) -> Any:
