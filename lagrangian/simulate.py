@@ -27,11 +27,12 @@ from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
 from .scene import quantity, refuse_text
 from .solvers import SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .stepper import TURN
+from .swings import swing
 from .trajectory import Trajectory
 
 __all__ = ["simulate"]
 
-METHODS = ("taylor", *SCIPY_METHODS, "heyoka")
+METHODS = ("taylor", *SCIPY_METHODS, "heyoka", "linear")
 SAFETY = 6.0
 FLOAT_LIMIT = 1e-14  # accuracies below it need more digits than float64 has
 
@@ -48,7 +49,8 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     theta0, omega0 : n numbers each, floats or exact (``pi/2`` is pi/2); rad, rad/s
     times : m monotone times, growing or shrinking (the motion is followed backwards); s
     accuracy : largest error of any angle that is wanted; rad.  Below 1e-14 numbers of enough digits are used
-    method : ``"taylor"``, a method of SciPy's ``solve_ivp`` (``"DOP853"``, ...), or ``"heyoka"`` if installed
+    method : ``"taylor"``, a method of SciPy's ``solve_ivp`` (``"DOP853"``, ...), ``"heyoka"`` if installed, or
+        ``"linear"``, small swings about hanging, with their error against the nonlinear motion
     digits : None, or how many decimal digits to compute with; results are then mpmath numbers
     dense : whether ``trajectory.at(t)`` shall work between the times
     events : named :class:`Crossing` to look for, such as ``flips(chain)``
@@ -139,7 +141,9 @@ def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times:
                method: str) -> tuple[FloatRun, Any]:
     """The error is that against Taylor steps two digits finer, and theirs added."""
     start = [np.array([float(x) for x in part]) for part in (theta, omega)]
-    if method == "heyoka":
+    if method == "linear":
+        angles, rates, steps = *swing(chain, start[0], start[1], times), 0
+    elif method == "heyoka":
         angles, rates, steps = integrate_heyoka(chain, start[0], start[1], times, accuracy * 1e-3)
     else:
         angles, rates, steps = integrate_scipy(system, start[0], start[1], times, method, accuracy * 1e-2)

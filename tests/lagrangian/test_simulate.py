@@ -7,13 +7,14 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from sympy import Rational, Symbol, cos, pi, sin, sqrt, symbols, sympify
 
 from lagrangian import (
     CompiledChain,
     Crossing,
     DriveError,
+    NotAnEquilibriumError,
     NotASceneError,
     QuantityError,
     Rod,
@@ -259,6 +260,34 @@ def test_other_methods_give_the_same_motion_and_say_how_wrong_they_are(method):
         other = simulate(system, [1, 2], [0, 0], times, accuracy=1e-6, method=method)
 
         assert abs(other.theta - mine.theta).max() <= other.error[-1] < 1e-3
+
+
+@measured
+@given(st.data())
+def test_small_swings_follow_the_linear_model_to_third_order(data):
+    """The linear model's error is stated, honest, and shrinks with the square of relative amplitude."""
+    drawn = data.draw(chains(most=4))
+    chain = CompiledChain(*drawn.rods[:, :2].T, drawn.rods[:, 6] / drawn.rods[:, 0],
+                          np.sqrt(drawn.rods[:, 2] / drawn.rods[:, 0]), upright=False, springs=drawn.springs)
+    theta, omega = state_of(data.draw, len(chain))
+    assume((chain.rods[:, 6] + chain.rods[:, 1] * (chain.rods[::-1, 0].cumsum()[::-1] - chain.rods[:, 0]) > 0.05).all())
+    times = np.linspace(0, 1, 11)
+    errors = []
+    for size in (1e-2, 1e-3):
+        linear = simulate(chain, size * theta, size * omega, times, method="linear", accuracy=1e-3)
+        true = simulate(chain, size * theta, size * omega, times, accuracy=1e-13)
+        errors.append(abs(linear.theta - true.theta).max())
+        assert errors[-1] <= linear.error[-1] and linear.method == "linear"
+
+    assert errors[1] < 5e-3 * errors[0] + 1e-13
+
+
+def test_the_linear_model_is_refused_where_it_does_not_hold():
+    """A shaken support, dampers, no weight."""
+    one = [1.0]
+    for options in ({"support_acceleration": (1, 0)}, {"damping": [1]}, {"gravity": 0}):
+        with pytest.raises(NotAnEquilibriumError, match="taylor"):
+            simulate(CompiledChain(one, one, one, one, **options), [0.1], [0], [0, 1], method="linear")
 
 
 def test_chaos_is_reported():

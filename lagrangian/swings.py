@@ -1,0 +1,66 @@
+r"""Small swings about hanging: the linear model, exact in time, for chains on a support at rest.
+
+With the angles measured from hanging, ``M_ij = l_i p_j`` (i < j) and ``M_ii = I_i + l_i**2 (m_(i+1) + ... + m_n)``,
+
+    M theta'' + K theta = 0,   K = diag(g p_i) + springs,   p_i = m_i H_i + l_i (m_(i+1) + ... + m_n),
+
+whose solution is a sum of n modes, cosines and sines of ``sqrt(mu_i) t``.  The terms left out are of third order
+in the angles, which therefore lose ``theta**2`` of their phase: how much, :func:`lagrangian.simulate` states by
+following the nonlinear motion too.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .chain import CompiledChain
+from .constants import to_float
+from .errors import NotAnEquilibriumError
+
+__all__ = ["swing"]
+
+
+def swing(chain: CompiledChain, theta: Any, omega: Any, times: Any) -> tuple[Any, Any]:
+    """Angles and rates of the linear model at ``times``, shape (times, n) each.
+
+    Raises NotAnEquilibriumError where the chain does not hang still: a support that accelerates sideways or in waves,
+    no weight, springs whose rest is upright; and where dampers would make the modes decay.
+    """
+    ax, ay = (to_float(x) for x in chain.support.constant)
+    pull = to_float(chain.gravity) + ay
+    reasons = [(not chain.support.steady or ax != 0, "the support of this one accelerates"),
+               (pull <= 0, f"this one's weight is {pull:.3g} m/s**2"),
+               (chain.damping is not None, "this one has dampers"),
+               (chain.springs is not None and chain.upright, "the springs of this one rest upright")]
+    for wrong, reason in reasons:
+        if wrong:
+            raise NotAnEquilibriumError(f"the linear model is that of a chain that hangs and swings, and {reason}: "
+                                        f"choose "
+                                        f"method='taylor'.")
+    M, K = _matrices(chain, pull)
+    rest = np.pi * chain.upright + (2 * np.pi * np.rint((theta - np.pi * chain.upright) / (2 * np.pi))
+                                    if chain.springs is None else 0.0)
+    lower = np.linalg.cholesky(M)
+    mu, modes = np.linalg.eigh(np.linalg.solve(lower, np.linalg.solve(lower, K).T))
+    shapes, frequency = np.linalg.solve(lower.T, modes), np.sqrt(np.maximum(mu, 0.0))
+    a, b = (modes.T @ lower.T @ part for part in (theta - rest, omega))
+    phase = np.outer(np.asarray(times) - times[0], frequency)
+    sine = np.sin(phase)
+    angles = (a * np.cos(phase) + b / frequency * sine) @ shapes.T
+    return angles + rest, (b * np.cos(phase) - a * frequency * sine) @ shapes.T
+
+
+def _matrices(chain: CompiledChain, pull: float) -> tuple[Any, Any]:
+    m, l, I, _, _, _, mH, _ = chain.rods.T
+    n = len(chain)
+    beyond = np.append(np.cumsum(m[::-1])[::-1][1:], 0.0)
+    p = mH + l * beyond
+    upper = np.triu(np.outer(l, p), 1)
+    M = upper + upper.T + np.diag(I + l * l * beyond)
+    K = np.diag(pull * p)
+    if chain.springs is not None:
+        step = np.eye(n) - np.eye(n, k=-1)
+        K = K + step.T @ (chain.springs[:, None] * step)
+    return M, K
