@@ -1,7 +1,7 @@
-"""Enclosures of the true Floquet matrix, beside what computes the same digits without proof: mpmath's Taylor integrator.
+"""Enclosures of the true Floquet matrix, beside what finds the same digits without proof: mpmath's Taylor integrator.
 
-``python benchmarks/enclosure.py`` prints milliseconds of processor time for a point, the least of three runs, and the ratio
-to ``mpmath.odefun`` (two columns over one period, 30 digits) in the same run.
+``python benchmarks/enclosure.py`` prints milliseconds of processor time for a point, the least of three runs, and the
+ratio to ``mpmath.odefun`` (two columns over one period, 30 digits) in the same run.
 """
 
 import random
@@ -16,12 +16,12 @@ a, b, t = symbols("a b t")
 F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 20)
 
 
-def least(function, repeats=3):
-    """The least processor time of a few runs, in ms."""
+def least(function, *arguments, repeats=3):
+    """The least processor time of a few calls, in ms."""
     best = float("inf")
     for _ in range(repeats):
         start = time.process_time()
-        function()
+        function(*arguments)
         best = min(best, 1e3 * (time.process_time() - start))
     return best
 
@@ -29,7 +29,8 @@ def least(function, repeats=3):
 def points(count, sizes, seed=1):
     """Random exact points with |a| and |b| up to the sizes."""
     draw = random.Random(seed)
-    return [{s: Rational(draw.randint(-1000, 1000), 1000) * size for s, size in zip((a, b), sizes)} for _ in range(count)]
+    return [{s: Rational(draw.randint(-1000, 1000), 1000) * size for s, size in zip((a, b), sizes, strict=True)}
+            for _ in range(count)]
 
 
 def by_odefun(values, digits=30):
@@ -41,22 +42,28 @@ def by_odefun(values, digits=30):
             f(2 * mpmath.pi)
 
 
+def enclose(places, digits):
+    """An enclosure at every point."""
+    for values in places:
+        F.enclosure(values, digits)
+
+
 def main():
     box = points(30, (Rational(5, 2), Rational(3, 2)))
-    ours = least(lambda: [F.enclosure(v, 30) for v in box]) / len(box)
-    theirs = least(lambda: by_odefun(box[0]), 1)
+    ours = least(enclose, box, 30) / len(box)
+    theirs = least(by_odefun, box[0], repeats=1)
     print(f"enclosure, 30 digits, |a| <= 2.5, |b| <= 1.5: {ours:.2f} ms a point; "
           f"mpmath.odefun, no bound: {theirs:.0f} ms, {theirs / ours:.0f} times as long")
     for digits in (15, 100, 1000):
         some = box[:5 if digits < 1000 else 1]
-        print(f"enclosure, {digits} digits: {least(lambda: [F.enclosure(v, digits) for v in some]) / len(some):.1f} ms")
+        print(f"enclosure, {digits} digits: {least(enclose, some, digits) / len(some):.1f} ms")
     for values in ({a: 4000, b: 1000}, {a: -4000, b: 10}, {a: 1, b: 1000}):
-        print(f"enclosure, 30 digits at {values}: {least(lambda: F.enclosure(values, 30)):.0f} ms")
+        print(f"enclosure, 30 digits at {values}: {least(enclose, [values], 30):.0f} ms")
     print(f"verdict: {least(lambda: [F.verdict(v) for v in box]) / len(box):.2f} ms a point")
     print(f"multipliers, 15 digits: {least(lambda: [F.multipliers(v) for v in box]) / len(box):.2f} ms a point")
     print(f"remainder at n = 20: {least(lambda: [F.remainder(v) for v in box[:5]]) / 5:.0f} ms a point")
     for r, q, digits in ((0, 5, 30), (3, 1000, 30), (0, 10**6, 30), (3, 1000, 1000), (0, 10**6, 1000)):
-        print(f"mathieu_a({r}, {q}), {digits} digits: {least(lambda: mathieu_a(r, q, digits)):.1f} ms")
+        print(f"mathieu_a({r}, {q}), {digits} digits: {least(mathieu_a, r, q, digits):.1f} ms")
 
 
 if __name__ == "__main__":

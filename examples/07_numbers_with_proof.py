@@ -8,6 +8,7 @@ multipliers, and verdicts with their reasons.  Writes ``docs/images/remainder.pn
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import mpmath
 import numpy as np
 from sympy import Matrix, Rational, cos, symbols
 
@@ -16,7 +17,8 @@ from fastpicard import FloquetMatrix
 PICTURE = Path(__file__).parent.parent / "docs" / "images" / "remainder.png"
 a, b, c, t = symbols("a b c t")
 P = Matrix([[0, 1], [-a - b * cos(t), 0]])
-POINTS = {"(-0.1, 0.55)": {a: Rational(-1, 10), b: Rational(11, 20)}, "(2.5, 1.5)": {a: Rational(5, 2), b: Rational(3, 2)}}
+POINTS = {"(-0.1, 0.55)": {a: Rational(-1, 10), b: Rational(11, 20)},
+          "(2.5, 1.5)": {a: Rational(5, 2), b: Rational(3, 2)}}
 
 
 def main() -> None:
@@ -29,8 +31,9 @@ def main() -> None:
             F = FloquetMatrix(P.subs(values), t, int(n))
             errors.append(distance(F, truth))
             proved.append(F.remainder())
-        print(f"(a, b) = {name}: the bound is at most {max(x / y for x, y in zip(proved, errors, strict=True)):.3f} times "
-              f"the error; 30 digits need n = {FloquetMatrix.for_accuracy(P, t, values, Rational(1, 10**30)).n}")
+        excess = max(x / y for x, y in zip(proved, errors, strict=True))
+        print(f"(a, b) = {name}: the bound is at most {excess:.3f} times the error; 30 digits need "
+              f"n = {FloquetMatrix.for_accuracy(P, t, values, Rational(1, 10**30)).n}")
         axes.semilogy(orders, errors, "o", color=colour, label=f"true error at (a, b) = {name}")
         axes.semilogy(orders, proved, "-", color=colour, label="proved, a posteriori")
         axes.semilogy(orders, [a_priori(values, int(n)) for n in orders], ":", color=colour, label="proved, a priori")
@@ -59,8 +62,6 @@ def distance(F: FloquetMatrix, truth: object) -> float:
 
 def mpf(x: object) -> object:
     """The midpoint of a ball as an exact mpmath number."""
-    import mpmath
-
     mantissa, exponent = x.mid().man_exp()
     return mpmath.mp.make_mpf(mpmath.libmp.from_man_exp(int(mantissa), int(exponent)))
 
