@@ -6,13 +6,13 @@ Mathematica package FastPicard ([Neves]: "Approximating Solutions of Linear
 Ordinary Differential Equations with Periodic Coefficients by Exact Picard
 Iterates", The Mathematica Journal 10(1), 2006).
 
-The files are read, and import one another, in this order: errors, ring, modes,
-expressions, evaluate, horner, doubledouble, vectorise, series, integrate, matrix, increments, picard,
-floquet, mathieu.
+The order in which the files are best read, which is the order in which they may import one another, stands in
+``setup.cfg`` and is held by a test of the imports.
 """
 
 from fastpicard.boundaries import Boundary, Root, boundaries
 from fastpicard.certify import CertifiedChart, certify
+from fastpicard.chart import chart
 from fastpicard.errors import (
     BadInputError,
     BadTypeError,
@@ -53,6 +53,7 @@ __all__ = [
     "Verdict",
     "boundaries",
     "certify",
+    "chart",
     "fast_picard",
     "gather",
     "mathieu_a",
