@@ -29,7 +29,7 @@ from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rh
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, check_digits, exact_number, exact_values, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import generic_values, half_period, reversal
+from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.harmonics import harmonics
 from fastpicard.modes import Modes
 from fastpicard.remainder import a_posteriori
@@ -74,7 +74,7 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
     -0.6963449249569149
     """
     size, signs = F.shape[0], reversal(F._P)
-    if size % 2 or not F._structure(generic_values(F._P))[0]:
+    if size % 2 or not pairs(F._P)[0]:
         raise BadInputError("boundaries need multipliers in pairs lambda, 1/lambda, and those of this P do not come in "
                             "pairs (damping, say).  Use certify or F.verdict, which ask whether all are inside the "
                             "unit circle.")

@@ -270,7 +270,7 @@ def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[lis
     """One map for each member, from an iterate whose remainder on all rectangles is small."""
     majorant = common_bound([amplitudes(chart, member, boxes) for member in chart.members])
     with ctx.workprec(BITS):
-        period = _period(chart) / (2 if rule.half else 1)
+        period = chart.period / (2 if rule.half else 1)
         order = _order(majorant, period)
         error = max(upper_float(x.upper()) for x in a_priori(majorant, period, order).entries())
         F = chart.F.to_order(order)
@@ -278,10 +278,6 @@ def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[lis
         maps = [LocalMap(chart.polynomials(collapsed, member), [error] * (F.shape[0] * F.shape[1]))
                 for member in chart.members]
     return maps, order, error
-
-
-def _period(chart: Charted) -> Any:
-    return chart.F._at({s: arb(1) for s in chart.F._P.t.free_symbols} | dict.fromkeys(chart.members[0], arb(1)))[1]
 
 
 def _order(majorant: Any, period: Any, tol: float = REMAINDER) -> int:
@@ -327,11 +323,11 @@ def _chunks(state: _State, boxes: Rectangles, maps: list[LocalMap]) -> list[Chun
     """The first models; rectangles that are too large for their degree are halved."""
     np = numpy()
     rows = state.chart.F.shape[0]
-    degree = 8 if rows == 2 else 6
+    degree = 8 if rows <= 4 else 6
     found = []
     for round_ in range(16):
         beyond = _beyond(maps, boxes, degree)
-        large = beyond > (1e-6 if round_ < 15 else np.inf)
+        large = beyond > ((1e-6 if rows == 2 else 1e-10) if round_ < 15 else np.inf)
         good = np.flatnonzero(~large)
         for start in range(0, len(good), 48):
             part = boxes.at(good[start:start + 48])

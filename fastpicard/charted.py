@@ -80,6 +80,14 @@ class Charted:
     members: tuple[Member, ...]
     decoupled: bool
 
+    @property
+    def period(self) -> Any:
+        """The period T, a ball at the working precision."""
+        if self.F.period.free_symbols:
+            raise BadInputError(f"the period of a chart must be a number, but it is {self.F.period}.  Measure the time "
+                                "in units of it.")
+        return expression_ball(self.F.period, {})
+
     def exponents(self, member: Member, powers: Sequence[tuple[Symbol, int]]) -> Exponents:
         """The exponents of u and w of a monomial in the parameters."""
         return _exponents(member, powers, self.axes)

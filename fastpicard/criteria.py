@@ -30,7 +30,7 @@ from flint import fmpq
 from fastpicard.determinants import determinant, hermite, power_sums, product, sums_of_rho
 from fastpicard.evaluate import numpy
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import Signs, generic_values, half_period, reversal
+from fastpicard.halfway import Signs, half_period, pairs, reversal
 from fastpicard.modes import Modes
 from fastpicard.taylormodels import UNIT, Models
 
@@ -61,7 +61,7 @@ class Criterion:
 def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
     size, signs = F.shape[0], reversal(F._P)
-    paired, form = F._structure(generic_values(F._P)) if size % 2 == 0 else (False, None)
+    paired, form = pairs(F._P)
     balanced = signs is not None and 2 * signs.count(1) == size
     if paired and balanced and size == 2:
         return Criterion("half-period factors of trace -+ 2", True, half_period, _flat, _by_factors)

@@ -40,6 +40,7 @@ from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Modes, mask, orient
 from fastpicard.picard import PackedIncrements
 from fastpicard.ring import ONE, Polynomial, generator, multiply
+from fastpicard.spectrum import symplectic_forms
 
 Signs = tuple[int, ...]
 
@@ -47,6 +48,15 @@ Signs = tuple[int, ...]
 def reversal(P: SeriesMatrix) -> Signs | None:
     """Signs ``s`` with ``s P(-t) s = -P(t)`` at all values of the parameters, the first of them 1, or None."""
     return harmonics(P, generic_values(P)).reversal
+
+
+def pairs(P: SeriesMatrix) -> tuple[bool, Any]:
+    """Whether multipliers come in pairs lambda, 1/lambda at all parameters, and a symplectic form, if there is one.
+
+    They do where ``P`` is Hamiltonian, or reverses in time and has even size.
+    """
+    forms = symplectic_forms(P, {})
+    return bool(forms) or P.shape[0] % 2 == 0 and reversal(P) is not None, forms[0] if forms else None
 
 
 def generic_values(P: SeriesMatrix) -> dict[Symbol, Any]:

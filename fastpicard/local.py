@@ -101,6 +101,13 @@ def span(terms: dict[Exponents, Any], boxes: Rectangles) -> tuple[Array, Array]:
     return low - lost, high + lost
 
 
+def span_at(chart: Charted, terms: dict[Exponents, Any], grid: list[Array]) -> Array:
+    """The value of a polynomial of few terms at points of the chart, to some ulp of its largest term."""
+    np = numpy()
+    u, w = (axis.inner(z) for axis, z in zip(chart.axes, grid, strict=True))
+    return sum((float(c.mid()) * u**i * w**j for (i, j), c in terms.items()), np.zeros(len(u)))
+
+
 def _power(lower: Array, upper: Array, k: int) -> tuple[Array, Array]:
     np = numpy()
     if k == 0:

@@ -1,0 +1,198 @@
+r"""Charts of points: traces, margins and verdicts on a grid, in float64 with bounds.
+
+    margin > 0  stable,   margin < 0  unstable,   |margin| <= error  undecided
+
+For one degree of freedom the margin is ``2 - |trace|``; for modes, the least of theirs; for coupled systems
+``min (2 - |rho|)`` over the real rho, and ``-max |Im rho|`` where one is not real; with damping, one minus the largest
+modulus of a multiplier.
+
+Two bounds make up the error of a trace: that of the evaluation (module ``vectorise``) and the remainder of the iterate,
+here the a-priori one at every point: ``sum over k > n of (Pbar T)**k / k!``, which for ``y'' + s(t) y = 0`` has
+``sqrt(sup |s|) T`` for ``Pbar T``.  Where ``y'' = q y`` with q > 0 at all times, unstable by convexity, none is needed.
+Where the error is more than the margin the pixel is undecided: truncation is visible, not hidden.  The error of coupled
+and damped charts is an estimate (the matrix's bound times its eigenvectors' condition); proofs come from ``certify``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import lgamma
+from typing import Any
+
+from flint import ctx
+from sympy import Symbol
+
+from fastpicard import sweeps
+from fastpicard.charted import Charted, Member, read_chart
+from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.evaluate import Values, numpy
+from fastpicard.floquet import FloquetMatrix
+from fastpicard.halfway import pairs
+from fastpicard.local import BITS, Rectangles, convex, span_at
+from fastpicard.vectorise import Collapsed, Evaluator
+
+Array = Any
+
+
+def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any],
+          points: tuple[int, int] = (400, 400), fixed: Values | None = None, modes: Any = None) -> Any:
+    """Trace, margin, verdict and error bound of the n-th iterate on a grid of two parameters.
+
+    Parameters
+    ----------
+    F : FloquetMatrix       its order ``n`` is taken as it is
+    x, y : (Symbol, lo, hi)
+    points : (across, up)
+    fixed : {Symbol: number} for the other parameters
+    modes : sequence of {Symbol: expression}, as for :func:`certify`
+
+    Returns
+    -------
+    xarray.Dataset with coordinates y and x, and
+        ``trace`` (of the Floquet matrix; of the mode with the least margin), ``margin``, ``error``, ``verdict``
+        (1 stable, -1 unstable, 0 undecided: the margin is not larger than the error); ``attrs`` say where it comes
+        from; ``.plot()`` draws it with matplotlib.
+
+    Raises
+    ------
+    BadInputError, BadTypeError, MissingParameterError
+        if the axes, points, modes or fixed values are not as described.
+
+    Notes
+    -----
+    A million points of one rod take a second or two.  What is proved for whole rectangles is :func:`certify`.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, cos
+    >>> from sympy.abc import a, b, t
+    >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 40)
+    >>> data = chart(F, (a, -1, 2), (b, 0, 2), points=(31, 21))
+    >>> int(data.verdict.sel(a=-0.1, b=0.5, method="nearest"))
+    1
+    """
+    problem = read_chart(F, x, y, fixed, modes)
+    across, up = _counts(points)
+    np = numpy()
+    first, second = problem.axes
+    xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)
+    grid = [z.ravel() for z in np.meshgrid(xs, ys)]
+    paired, _ = pairs(problem.F._P)
+    scalar = paired and problem.F.shape == (2, 2)
+    compute = _by_trace if scalar else _by_matrix
+    best: list[Array] | None = None
+    for member in problem.members:
+        found = list(compute(problem, member, grid, paired))
+        if best is None:
+            best = found
+        else:
+            worse = found[1] < best[1]
+            best = [np.where(worse, new, old) for new, old in zip(found, best, strict=True)]
+    if best is None:
+        raise BadInputError("a chart needs at least one mode, but modes is empty.  Leave it out for F itself.")
+    trace, margin, error = (z.reshape(up, across) for z in best)
+    verdict = np.where(abs(margin) <= error, 0, np.sign(margin)).astype(np.int8)
+    verdict = np.where(np.isfinite(margin) & np.isfinite(error), verdict, 0).astype(np.int8)
+    open_ = np.flatnonzero(verdict.ravel() == 0)
+    corner = np.stack([axis.inner(z[open_]) for axis, z in zip(problem.axes, grid, strict=True)])
+    convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])
+    verdict.reshape(-1)[open_[convex_there]] = -1
+    dims = (str(second.symbol), str(first.symbol))
+    return sweeps.dataset(
+        {"trace": (dims, trace, {"long_name": "trace of the Floquet matrix"}),
+         "margin": (dims, margin, {"long_name": "distance from the boundary: positive where stable"}),
+         "error": (dims, error, {"long_name": "bound of the margin's error"}),
+         "verdict": (dims, verdict, {"long_name": "1 stable, -1 unstable, 0 undecided"})},
+        {dims[0]: (ys, {}), dims[1]: (xs, {})},
+        {"order": problem.F.n, "period": str(problem.F.period), "modes": len(problem.members),
+         "error_is": "bound" if scalar else "estimate", "equation": _shown(problem)})
+
+
+def _counts(points: Any) -> Sequence[int]:
+    if not isinstance(points, tuple | list) or len(points) != 2 or not all(isinstance(k, int) for k in points):
+        raise BadTypeError(f"points must be (across, up), but it is {points!r}.  Use points=(400, 400).")
+    if min(points) < 2:
+        raise BadInputError(f"a chart needs two points along each axis, but points is {points!r}.  Use (400, 400).")
+    return points
+
+
+def _shown(problem: Charted) -> str:
+    text = str(problem.F._P.as_matrix().tolist())
+    return text if len(text) < 300 else text[:297] + "..."
+
+
+def _columns(problem: Charted, member: Member, names: Sequence[Symbol], grid: list[Array]) -> list[Array]:
+    """The parameters of P at the points of the grid."""
+    columns = []
+    for name in names:
+        number, (i, j) = member[name]
+        columns.append(float(number) * grid[0]**i * grid[1]**j)
+    return columns
+
+
+def _evaluated(problem: Charted, member: Member, collapsed: Collapsed, grid: list[Array]) -> tuple[Array, Array]:
+    names = tuple(sorted(collapsed.symbols, key=str))
+    columns = _columns(problem, member, names, grid)
+    values, bounds, _ = Evaluator(collapsed, names)(columns)
+    if values.shape[1] != len(grid[0]):  # no parameters at all
+        np = numpy()
+        values, bounds = (np.repeat(z, len(grid[0]), axis=1) for z in (values, bounds))
+    return values, bounds
+
+
+def _by_trace(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
+    np = numpy()
+    values, bounds = _evaluated(problem, member, problem.F._collapsed_trace, grid)
+    trace = values[0]
+    error = bounds[0] + 2 * _remainder(problem, member, grid) + 2.0**-46 * (1 + abs(trace))  # the parameters' rounding
+    return trace, np.where(np.isnan(trace), np.nan, 2 - abs(trace)), error
+
+
+def _remainder(problem: Charted, member: Member, grid: list[Array]) -> Array:
+    """A bound of the entries of ``Phi - Phi_n`` at every point: the a-priori sum with the norm of the balanced P."""
+    np = numpy()
+    with ctx.workprec(BITS):
+        waves = problem.waves(member)
+        length = float(problem.period)
+        bound = np.zeros((*problem.F.shape, len(grid[0])))
+        for (i, j), parts in waves.items():
+            bound[i, j] = sum((abs(span_at(problem, terms, grid)) for terms in parts.values()), np.zeros(len(grid[0])))
+    if problem.F.shape == (2, 2) and not bound[0, 0].any() and not bound[1, 1].any():
+        # the terms of the diagonal are s**k / k! for even k; only they enter the trace
+        return _tail(np.sqrt(bound[0, 1] * bound[1, 0]) * length, problem.F.n)
+    return _tail(bound.sum(axis=1).max(axis=0) * length, problem.F.n)
+
+
+def _tail(z: Array, n: int) -> Array:
+    """``sum over k > n of z**k / k!``, rounded up: by a table, at the next larger entry."""
+    np = numpy()
+    table = np.geomspace(1e-3, 60.0, 2048)  # beyond, nothing is claimed
+    log_terms = np.array([k * np.log(table) - lgamma(k + 1) for k in range(n + 1, n + 401)])
+    with np.errstate(over="ignore"):
+        sums = np.append(np.exp(log_terms).sum(axis=0), np.inf) * (1 + 1e-9)
+    return sums[np.searchsorted(table, z)]
+
+
+def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
+    np = numpy()
+    size = problem.F.shape[0]
+    values, bounds = _evaluated(problem, member, problem.F._collapsed, grid)
+    matrices = values.T.reshape(-1, size, size)
+    good = np.isfinite(matrices).all(axis=(1, 2))
+    matrices = np.where(good[:, None, None], matrices, np.eye(size))
+    multipliers, vectors = np.linalg.eig(matrices)
+    with np.errstate(all="ignore"):
+        condition = np.linalg.cond(vectors)
+        if paired:
+            rho = multipliers + 1 / multipliers
+            real = abs(rho.imag) <= 1e-6 * (1 + abs(rho))
+            margin = np.where(real, 2 - abs(rho.real), -abs(rho.imag)).min(axis=1)
+        else:
+            margin = 1 - abs(multipliers).max(axis=1)
+        error = (bounds.max(axis=0) + _remainder(problem, member, grid)) * size * np.minimum(condition, 1e8)
+    trace = np.trace(matrices, axis1=1, axis2=2)
+    return (np.where(good, trace, np.nan), np.where(good, margin, np.nan),
+            np.where(good & np.isfinite(error), error, np.inf))
+
+
+__all__ = ["chart"]

@@ -1,0 +1,84 @@
+"""Charts of points: pixels agree with what is proved, and truncation is visible."""
+
+import matplotlib
+import numpy as np
+import pytest
+from sympy import Matrix, Rational, cos, sqrt
+from sympy.abc import a, b, c, h, t, v
+
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, certify, chart
+from fastpicard.plotting import raster
+
+matplotlib.use("Agg")
+P = Matrix([[0, 1], [-a - b * cos(t), 0]])
+MATHIEU, ROUGH = FloquetMatrix(P, t, 40), FloquetMatrix(P, t, 20)
+MODES = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))]
+
+
+@pytest.mark.parametrize("x, y, more", [((a, -1, 2), (b, 0, 2), {}), ((h, 0, 0.1), (v, 0.1, 100), {"modes": MODES})])
+@pytest.mark.parametrize("F", [MATHIEU, ROUGH])
+def test_pixels_agree_with_certified_cells(F, x, y, more):
+    """Wherever both decide; at order 20 as well, where the error bound says what the iterate cannot know."""
+    data, proved = chart(F, x, y, points=(97, 89), **more), certify(F, x, y, undecided=1e-3, **more)
+    first, second = data[str(x[0])].values, data[str(y[0])].values
+    for i in range(0, 89, 4):
+        for j in range(0, 97, 4):
+            assert int(data["verdict"][i, j]) * int(proved.verdict(first[j], second[i])) >= 0
+
+
+def test_errors_bound_the_true_margin():
+    """At order 20 against the true trace."""
+    data = chart(ROUGH, (a, -1, 3), (b, 0, 2), points=(7, 5))
+    for y in data["b"].values:
+        for x in data["a"].values:
+            cell = data.sel(a=x, b=y)
+            true = float(MATHIEU.enclosure({a: float(x), b: float(y)}, 20).trace())
+            assert abs(float(cell["trace"]) - true) <= float(cell["error"])
+
+
+def test_undecided_is_shown_where_truncation_matters():
+    """The seventh boundary of Out[26], 2.2506565 at b = 0.1, is none that twenty iterates may claim."""
+    data = chart(ROUGH, (a, 2, 3), (b, 0, 0.2), points=(20, 20))
+
+    assert (data["verdict"] == 0).all()
+    assert data.attrs["order"] == 20
+
+
+def test_coupled_and_damped_systems():
+    """By eigenvalues; the two rods as a system of four against their modes, and damping."""
+    S = Matrix([[18, -9], [-27, 24]]) / 7 * (-1 / v**2 + h * cos(t))
+    coupled = FloquetMatrix(Matrix.zeros(2).row_join(Matrix.eye(2)).col_join((-S).row_join(Matrix.zeros(2))), t, 30)
+    whole = chart(coupled, (h, 0, 0.1), (v, 20, 100), points=(23, 19))
+    modes = chart(MATHIEU, (h, 0, 0.1), (v, 20, 100), points=(23, 19), modes=MODES)
+    damped = chart(FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 30), (a, 0, 1), (b, 0, 1), points=(9, 9),
+                   fixed={c: Rational(1, 5)})
+
+    both = (whole["verdict"].values != 0) & (modes["verdict"].values != 0)
+    assert both.mean() > 0.9
+    assert (whole["verdict"].values == modes["verdict"].values)[both].all()
+    assert int(damped["verdict"].sel(a=0.5, b=0.1, method="nearest")) == 1
+
+
+def test_plots_are_drawn_with_labels():
+    """Both kinds of chart; undecided pixels are those of the cells."""
+    data = chart(MATHIEU, (a, -1, 2), (b, 0, 2), points=(20, 20))
+    axes = data.plot(xlabel="stiffness a", ylabel="b", title="Mathieu")
+    proved = certify(MATHIEU, (a, -1, 2), (b, 0, 2), undecided=1e-2)
+    other = proved.plot()
+    codes = raster(proved, 60, 40)
+
+    assert axes.get_xlabel() == "stiffness a" and other.get_xlabel() == "$a$"
+    assert set(np.unique(codes)) == {-1, 0, 1}
+    for i in range(0, 60, 7):
+        for j in range(0, 40, 7):
+            x, y = -1 + 3 * (i + 0.37) / 60, 2 * (j + 0.61) / 40
+            assert codes[i, j] in (0, int(proved.verdict(x, y)))
+    for picture in (axes, other):
+        matplotlib.pyplot.close(picture.figure)
+
+
+@pytest.mark.parametrize("points, error", [((1, 5), BadInputError), (400, BadTypeError), ((2.5, 3), BadTypeError)])
+def test_a_chart_needs_points(points, error):
+    """Two at least along each axis."""
+    with pytest.raises(error, match="points"):
+        chart(MATHIEU, (a, 0, 1), (b, 0, 1), points=points)
