@@ -89,7 +89,7 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
             record = np.empty((min(most, 4096), 2 + n * (order + 4)))
         outcome, made, found = machine(advance)(
             chain.rods if rods is None else rods, chain.damping, chain.springs, constant, waves, order, tolerance,
-            np.inf, state, clock, times, found, out, 1 if given else record.shape[0] or most, record)
+            state, clock, times, found, out, 1 if given else record.shape[0] or most, record)
         steps += made
         if keep:
             kept.append(record[:made])

@@ -67,12 +67,14 @@ def shake(constant: Any, waves: Any, clock: Any, order: int, ax: Any, ay: Any) -
 def reach(series: Any, order: int, tolerance: float) -> float:
     """The length of the step; infinite at rest."""
     rho = np.inf
-    for m in range(max(1, order - 3), order + 1):
+    for m in range(order - 3, order + 1):
         largest = 0.0
         for k in range(series.shape[0]):
-            largest = max(largest, abs(series[k, 2, order - m]))
+            size = abs(series[k, 2, order - m])
+            largest = size if size > largest else largest
         if largest > 0.0:
-            rho = min(rho, exp(-log(largest) / (m + 1)))
+            here = exp(-log(largest) / (m + 1))
+            rho = here if here < rho else rho
     return rho * exp(log(tolerance) / (order + 1))
 
 
@@ -103,8 +105,8 @@ def move(series: Any, order: int, h: float, state: Any) -> None:
         state[3, k], state[4, k] = total(high, low + state[4, k])
 
 
-def advance(rods: Any, damping: Any, springs: Any, constant: Any, waves: Any, order: int, tolerance: float,
-            longest: float, state: Any, clock: Any, times: Any, found: int, out: Any, most: int, record: Any) -> Any:
+def advance(rods: Any, damping: Any, springs: Any, constant: Any, waves: Any, order: int, tolerance: float, state: Any,
+            clock: Any, times: Any, found: int, out: Any, most: int, record: Any) -> Any:
     """Step until ``most`` steps are made or all times are reached.  Returns the outcome, steps and times found.
 
     Shapes: rods (n, 8); damping, springs (n,) or None; constant (2, any), Taylor coefficients of the steady part of
@@ -123,7 +125,9 @@ def advance(rods: Any, damping: Any, springs: Any, constant: Any, waves: Any, or
         series[:] = 0.0
         expand(factors, damping, springs, delta, state[3], ax, ay, order, 1.0, held, series)
         remaining = (end - clock[0]) - clock[1]
-        h = min(reach(series, order, tolerance), longest, 2.0 * abs(remaining) + 1e-300)
+        h = reach(series, order, tolerance)
+        most_needed = 2.0 * abs(remaining) + 1e-300
+        h = h if h < most_needed else most_needed
         if not h > 1e-15 * abs(clock[0]):
             return STUCK, step, found
         if remaining < 0.0:

@@ -26,7 +26,7 @@ from __future__ import annotations
 from typing import Any
 
 from .machine import reordered
-from .recursion import force, inertia, torque, turned_force, turned_inertia
+from .recursion import inertia, torque, turned_force, turned_inertia
 
 __all__ = ["expand", "factor", "series_shape"]
 
@@ -56,8 +56,8 @@ def factor(rods: Any, s: Any, c: Any, one: Any, factors: Any) -> None:
         ll = l * l
         f[0], f[1], f[2] = I * r, m * Ic * r, ll * r  # of qu in qu', kappa_u'; of kappa_u in qu'
         f[3], f[4], f[5] = It * r, J * r, m * J * r  # of kappa_u in kappa_u'; of qn in qn', kappa_n'
-        f[6], f[7], f[8], f[9] = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, none, none, none, none,
-                                       one)
+        f[6], f[7] = -(mH + l * Er), -(J * l * Pun * r)  # of z
+        f[8], f[9] = -(m * Ic * (mH + l * Puu) + It * (mH * Pnn + l * Delta)) * r, -(J * mG * Pun * r)
         f[10], f[11], f[12], f[13] = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
         f[14], f[15], f[16], f[17] = l * r, Puu, Pun, r
         f[18], f[19], f[20], f[21], f[22] = s[k], c[k], l, I, mH
