@@ -25,6 +25,7 @@ from fastpicard.errors import (
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.integrate import gather, new_integrate, product_to_sum
 from fastpicard.mathieu import mathieu_a, mathieu_b
+from fastpicard.mathieu_solutions import mathieu_c, mathieu_exponent, mathieu_s
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.picard import FundamentalMatrix, PicardIterate, fast_picard, picard
 from fastpicard.series import PoissonSeries
@@ -58,6 +59,9 @@ __all__ = [
     "gather",
     "mathieu_a",
     "mathieu_b",
+    "mathieu_c",
+    "mathieu_exponent",
+    "mathieu_s",
     "new_integrate",
     "picard",
     "product_to_sum",

@@ -1,0 +1,128 @@
+r"""Solutions of Mathieu's equation ``y'' + (a - 2 q cos 2z) y = 0`` and its characteristic exponent, in balls.
+
+The basic solutions (DLMF 28.2(ii)) are the even ``w_I`` with ``w_I(0) = 1, w_I'(0) = 0`` and the odd ``w_II`` with
+``w_II(0) = 0, w_II'(0) = 1``: the first row of the fundamental matrix.  Floquet's theorem gives solutions with
+``y(z + pi) = exp(i pi nu) y(z)``, and
+
+    cos(pi nu) = w_I(pi; a, q)                                              (DLMF 28.2.16)
+
+fixes the exponent ``nu`` up to its sign and even integers.  Real ``nu`` means bounded solutions; here
+``0 <= Re nu <= 1`` and ``Im nu >= 0``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flint import acb, arb, arb_mat, ctx
+from mpmath.libmp import dps_to_prec
+
+from fastpicard.enclosure import over_period, to_digits, transition
+from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.evaluate import ball, check_digits, exact_number, to_complex, to_number
+from fastpicard.harmonics import Harmonics
+
+
+def mathieu_c(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
+    """``w_I(z; a, q)``, the even solution with value 1 at ``z = 0``: an mpf with all ``digits`` right.
+
+    At ``a = mathieu_a(r, q)`` it is periodic, ``ce_r(z, q) / ce_r(0, q)``.
+
+    Parameters
+    ----------
+    a, q, z : real numbers: int, Fraction, float (the dyadic number it is), mpf, SymPy number, arb
+    digits : int from 1 up
+
+    Raises
+    ------
+    BadTypeError
+        for text, symbols, complex numbers.
+    BadInputError
+        for nan and infinities, and for balls too wide for the digits.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> print(mpmath.nstr(mathieu_c(9, 0, 1, 20), 20))      # cos 3z
+    -0.98999249660044545727
+    """
+    return _solution(a, q, z, digits, 0)
+
+
+def mathieu_s(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
+    """``w_II(z; a, q)``, the odd solution with slope 1 at ``z = 0``; see :func:`mathieu_c`.
+
+    At ``a = mathieu_b(r, q)`` it is periodic, ``se_r(z, q) / se_r'(0, q)``.
+    """
+    return _solution(a, q, z, digits, 1)
+
+
+def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
+    """The characteristic exponent ``nu``, ``cos(pi nu) = w_I(pi; a, q)``: an mpc with all ``digits`` right.
+
+    Real (stable) or with real part 0 or 1 (unstable); arguments and errors as :func:`mathieu_c`.
+
+    Raises
+    ------
+    BadInputError
+        also where ``a`` cannot be told from a characteristic number: half the digits of ``w_I`` are lost there.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> mathieu_exponent(0.25, 0, 12)
+    mpc(real='0.5', imag='0.0')
+    >>> print(mpmath.nstr(mathieu_exponent(1, 1, 12), 12))  # in the first zone of instability
+    (1.0 + 0.453453534347j)
+    """
+    wanted, numbers = _checked(digits), _numbers(a, q)
+    tried = wanted + 5
+    while tried <= 8 * wanted + 200:
+        matrix = over_period(lambda: (_equation(*map(ball, numbers)), arb.pi()), 1, tried)
+        with ctx.workprec(dps_to_prec(tried) + 32):
+            nu = _exponent(matrix[0, 0])
+            if nu is not None and _is_known(nu.real, wanted) and _is_known(nu.imag, wanted):
+                return to_complex(nu, wanted)
+        tried *= 2
+    raise BadInputError(f"a = {a} cannot be told from a characteristic number at q = {q}: w_I(pi) is +-1 to "
+                        f"{tried // 2} digits.  On the boundary nu is 0 or 1.")
+
+
+def _is_known(x: Any, digits: int) -> bool:
+    return bool(x.is_zero() or x.rel_accuracy_bits() > dps_to_prec(digits))
+
+
+def _exponent(cosine: Any) -> Any:
+    """``nu`` from ``cos(pi nu)``, or None at the edges."""
+    if abs(cosine) < 1:
+        return acb(cosine.acos() / arb.pi())
+    if abs(cosine) > 1:
+        return acb(0 if cosine > 0 else 1, abs(cosine).acosh() / arb.pi())
+    return None
+
+
+def _solution(a: Any, q: Any, z: Any, digits: Any, column: int) -> Any:
+    wanted, (x, y, end) = _checked(digits), _numbers(a, q, z)
+
+    def once() -> Any:
+        return arb_mat([[transition(_equation(ball(x), ball(y)), arb(0), ball(end))[0, column]]])
+
+    is_box = any(isinstance(value, arb) and not value.is_exact() for value in (x, y, end))
+    return to_number(to_digits(once, wanted + 2, is_box)[0, 0], wanted)
+
+
+def _equation(a: Any, q: Any) -> Harmonics:
+    """``(y, y')' = P (y, y')`` in balls."""
+    zero = arb(0)
+    return Harmonics(2, {(0, 1): [(zero, arb(1), zero)], (1, 0): [(zero, -a, zero), (arb(2), 2 * q, zero)]})
+
+
+def _numbers(*values: Any) -> tuple[Any, ...]:
+    return tuple(exact_number(value, name) for value, name in zip(values, ("a", "q", "z"), strict=False))
+
+
+def _checked(digits: Any) -> int:
+    wanted = check_digits(digits)
+    if wanted is None:
+        raise BadTypeError("digits must be a positive integer, but it is None.  Use digits=15.")
+    return wanted

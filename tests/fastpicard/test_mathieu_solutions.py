@@ -1,0 +1,90 @@
+"""Solutions and exponents of Mathieu's equation: against SciPy where it is right, mpmath and closed forms."""
+
+import mpmath
+import pytest
+from flint import arb
+from hypothesis import given, settings, strategies as st
+from scipy.special import mathieu_cem, mathieu_sem
+from sympy import Symbol
+
+from fastpicard import BadInputError, BadTypeError, mathieu_a, mathieu_b, mathieu_c, mathieu_exponent, mathieu_s
+
+
+@pytest.mark.parametrize("r, q, z", [(0, 1.0, 0.7), (1, 3.0, 2.0), (2, 5.0, -1.2), (4, 10.0, 5.5)])
+def test_periodic_solutions_are_those_of_scipy(r, q, z):
+    """ce_r(z)/ce_r(0) and se_r(z)/se_r'(0), SciPy's angles in degrees, its slopes by z."""
+    degrees = float(mpmath.degrees(z))
+    even = mathieu_cem(r, q, degrees)[0] / mathieu_cem(r, q, 0)[0]
+    assert float(mathieu_c(mathieu_a(r, q, 30), q, z)) == pytest.approx(even, abs=1e-8)
+    if r > 0:
+        odd = mathieu_sem(r, q, degrees)[0] / mathieu_sem(r, q, 0)[1]
+        assert float(mathieu_s(mathieu_b(r, q, 30), q, z)) == pytest.approx(odd, abs=1e-8)
+
+
+@settings(max_examples=8)
+@given(st.floats(-3, 9), st.floats(-4, 4), st.floats(-3, 3))
+def test_solutions_agree_with_an_integrator_of_another_house(a, q, z):
+    """mpmath's Taylor integrator, 20 digits."""
+    with mpmath.workdps(25):
+        for start, found in (([1, 0], mathieu_c(a, q, z, 20)), ([0, 1], mathieu_s(a, q, z, 20))):
+            f = mpmath.odefun(lambda x, u: [u[1], -(a - 2 * q * mpmath.cos(2 * x)) * u[0]], 0, start)
+            # The integrator goes forward; solutions are even and odd.
+            value = f(abs(mpmath.mpf(z)))[0] * (1 if start[0] or z > 0 else -1)
+            assert abs(found - value) < 1e-15 * max(1, abs(value))
+
+
+@settings(max_examples=30)
+@given(st.floats(0.1, 30))
+def test_without_q_they_are_circular(a):
+    """cos sqrt(a) z, sin(sqrt(a) z)/sqrt(a), nu next to sqrt(a) modulo 2."""
+    root = mpmath.sqrt(mpmath.mpf(a))
+    assert abs(mathieu_c(a, 0, 2) - mpmath.cos(2 * root)) < 1e-13
+    assert abs(mathieu_s(a, 0, 2) - mpmath.sin(2 * root) / root) < 1e-13
+    nu = mathieu_exponent(a, 0)
+    assert nu.imag == 0 and abs(mpmath.cos(mpmath.pi * nu.real) - mpmath.cos(mpmath.pi * root)) < 1e-13
+
+
+@settings(max_examples=30)
+@given(st.fractions(-2, 9, max_denominator=50), st.fractions(0, 5, max_denominator=50), st.integers(15, 40))
+def test_the_exponent_is_the_period_of_the_solution(a, q, digits):
+    """cos(pi nu) = w_I(pi), in the digits asked for; real exactly where w_I(pi) is within [-1, 1]."""
+    try:
+        nu = mathieu_exponent(a, q, digits)
+    except BadInputError:  # on a boundary: then w_I(pi) is 1 or -1 to many digits
+        assert q == 0
+        return
+    value = mathieu_c(a, q, mpmath_pi(digits + 30), digits + 10)
+    with mpmath.workdps(digits + 10):
+        assert abs(mpmath.cos(mpmath.pi * nu) - value) < mpmath.mpf(10) ** (2 - digits) * max(1, abs(value))
+        assert (nu.imag == 0) == (abs(value) < 1)
+        assert 0 <= nu.real <= 1 and nu.imag >= 0
+
+
+def mpmath_pi(digits):
+    """pi as a number with so many digits."""
+    with mpmath.workdps(digits):
+        return +mpmath.pi
+
+
+def test_a_boundary_has_no_exponent_of_its_own():
+    """a = 4, q = 0: w_I(pi) = 1 exactly, and no ball can say on which side."""
+    with pytest.raises(BadInputError, match="characteristic number"):
+        mathieu_exponent(4, 0)
+
+
+@pytest.mark.parametrize(
+    "arguments, error",
+    [
+        (("1", 1, 1), BadTypeError),
+        ((1, 1j, 1), BadTypeError),
+        ((1, Symbol("q"), 1), BadTypeError),
+        ((1, float("inf"), 1), BadInputError),
+        ((1, arb(1, 0.1), 1), BadInputError),
+        ((1, 1, 1, 0), BadInputError),
+        ((1, 1, 1, None), BadTypeError),
+    ],
+)
+def test_bad_arguments_are_refused(arguments, error):
+    """Text, complex numbers, symbols, infinities, balls too wide, digits that are none."""
+    with pytest.raises(error):
+        mathieu_c(*arguments)
