@@ -83,8 +83,11 @@ def bisect(grows: object, low: float, high: float, tolerance: float) -> float:
 
 
 def report(F: FloquetMatrix, points: list[tuple[float, float]], modes: object) -> None:
-    moduli = [abs(F.multipliers({h: Rational(2, 100), v: Rational(y, 10)})[0]) for y in (801, 901)]
+    places = [{h: Rational(2, 100), v: Rational(y, 10)} for y in (801, 901)]
+    moduli = [abs(F.multipliers(place)[0]) for place in places]
+    proved = ", ".join(f"({float(place[h])}, {float(place[v])}): {F.verdict(place).name}" for place in places)
     print(f"{'largest':12}{'(0.02, 80.1): {:.6g}, (0.02, 90.1): {:.6g}'.format(*moduli):44}Out[48]: 1.01665, 1.")
+    print(f"{'proved':12}{proved:44}of the true equation, in balls")
     slow = min(modes.mu, key=lambda mu: mu.evalf())
     found = next(y for x, y in points if x == 0.06 and y < 40)
     exact = (-slow / (mathieu_a(0, -2 * slow * Rational(6, 100), 20) / 4)) ** Rational(1, 2)
