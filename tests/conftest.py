@@ -1,4 +1,5 @@
-"""Hypothesis profiles: ``dev`` while writing, ``ci`` before landing, ``nightly`` for the long run.
+"""Hypothesis profiles: ``dev`` while writing, ``ci`` before landing, ``brief`` for a second pass of the same laws with other
+ground types, ``nightly`` for the long run.
 
 ``HYPOTHESIS_PROFILE=ci`` asks for 1000 examples a law, the same ones on every run.  There are no
 deadlines: times belong in ``benchmarks/``.
@@ -19,6 +20,7 @@ settings.register_profile(
     # On a busy machine drawing the first example can be slow; that says nothing about the law.
     suppress_health_check=[HealthCheck.too_slow],
 )
+settings.register_profile("brief", max_examples=10, deadline=None, derandomize=True, database=None)
 # HYPOTHESIS_PROFILE=nightly python -m pytest -n 2 tests/fastpicard/test_enclosure.py: 100000 containment checks.
 settings.register_profile("nightly", max_examples=10_000, deadline=None, database=None)
 
