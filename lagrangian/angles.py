@@ -3,7 +3,7 @@ r"""Sine and cosine of a difference of angles, to the last digit, without branch
 The difference of two floats is ``d + e`` exactly, with ``e`` at most half a unit in the last place of ``d``;
 dropping ``e`` would cost 1e-10 where angles are 1e6 apart.  With ``n`` the integer nearest to ``2 d/pi``,
 
-    r = d - n pi/2 + e,   |r| <= pi/4,
+    r = d - n pi/2,   |r| <= pi/4,
 
 where ``pi/2`` is held in three parts, the first two short enough for ``n`` times them to be exact while
 ``|n| < 2**20``.  ``sin r`` and ``cos r`` are their Taylor polynomials of degree 17 and 16, whose remainders,
@@ -54,19 +54,19 @@ def product(a: Any, b: Any) -> tuple[Any, Any]:
 
 @inlined
 def sines(d: Any, e: Any) -> tuple[Any, Any]:
-    """``sin(d + e), cos(d + e)`` for ``|d| <= LARGEST`` and ``|e|`` below a unit in the last place of ``d``."""
+    """``sin(d + e), cos(d + e)`` for ``|d| <= LARGEST`` and ``|e|`` below 1e-9, of which the square is left out."""
     n = (d * PER_HALF + ROUND) - ROUND
     first = d - n * HALF_1
     second = n * HALF_2
     r = first - second
     e = e + (((first - r) - second) - n * HALF_3)
     z = r * r
-    odd = r + (r * z * (S3 + z * (S5 + z * (S7 + z * (S9 + z * (S11 + z * (S13 + z * (S15 + z * S17)))))))
-               + e * (1.0 - 0.5 * z))
+    cubic = r * z * (S3 + z * (S5 + z * (S7 + z * (S9 + z * (S11 + z * (S13 + z * (S15 + z * S17)))))))
     half = 0.5 * z
     lead = 1.0 - half
-    even = lead + (((1.0 - lead) - half)
-                   + (z * z * (C4 + z * (C6 + z * (C8 + z * (C10 + z * (C12 + z * (C14 + z * C16)))))) - e * r))
+    rest = ((1.0 - lead) - half) + z * z * (C4 + z * (C6 + z * (C8 + z * (C10 + z * (C12 + z * (C14 + z * C16))))))
+    odd = r + (cubic + e * (lead + rest))
+    even = lead + (rest - e * (r + cubic))
     quarter = n - 4.0 * ((0.25 * n + ROUND) - ROUND)  # n mod 4, between -2 and 2
     swap = n - 2.0 * ((0.5 * n + ROUND) - ROUND) != 0.0
     s = even if swap else odd

@@ -20,6 +20,7 @@ from .arithmetic import Balls
 from .chain import CompiledChain
 from .errors import QuantityError
 from .machine import rebound
+from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
 __all__ = ["best_order", "integrate_digits"]
@@ -124,7 +125,7 @@ class _Steps:
             if largest > 0:
                 logs.append(-log(largest) / (m + 1))
         h = exp(min(logs) + log(self.tolerance) / (self.order + 1)) if logs else 2 * abs(remaining) + 1
-        h = min(h, 2 * abs(remaining) + 1e-300)
+        h = min(h, 2 * abs(remaining) + 1e-300, FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega), 1e-300))
         if not h > 1e-30 * abs(float(self.start)) or h != h:
             raise QuantityError(f"the motion cannot be followed beyond t = {float(self.start)}: the step shrinks to "
                                 f"{h}.")

@@ -8,9 +8,25 @@ import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from sympy import Dummy, Rational, cos, exp, lambdify, sin, sqrt, symbols
+from sympy import (
+    Dummy,
+    Rational,
+    cos,
+    cosh,
+    diff,
+    exp,
+    factorial,
+    lambdify,
+    log,
+    sin,
+    sqrt,
+    symbols,
+    tan,
+    tanh,
+)
 
 from lagrangian import CompiledChain, QuantityError, Rod, Scene, SceneError, Support, TextError, euler_lagrange
+from lagrangian.arithmetic import MPNumbers
 from lagrangian.errors import NotAQuantityError
 
 t = symbols("t")
@@ -220,6 +236,22 @@ def test_support_acceleration_is_a_pair_or_a_function_of_time():
     mine, other = (c.acceleration(0.7, [0.3], [0.1]) for c in (chain, scene.compile()))
 
     assert abs(mine - other).max() < 1e-14
+
+
+@pytest.mark.parametrize("motion", [*MOTIONS, log(2 + t) * cosh(t / 3), tan(t / 4) + tanh(t), t**Rational(3, 2)],
+                         ids=str)
+def test_power_series_of_a_support_are_its_derivatives(motion):
+    """Coefficients of xi'' about t = 0.7 against SymPy's derivatives, in floats and in mpmath numbers."""
+    support = Scene([Rod.bob(1, 1)], Support(motion, 0), 1, t=t).compile().support
+    expected = [diff(motion, (t, 2 + j)).subs(t, Rational(7, 10)).evalf(40) / factorial(j) for j in range(8)]
+    context = mpmath.mp.clone()
+    context.dps = 35
+    floats = support.series(0.7, 7)[0]
+    numbers = support.series(context.mpf(7) / 10, 7, MPNumbers(context))[0]
+
+    assert all(abs(x - y) < 1e-12 * max(1, abs(y)) for x, y in zip(floats, expected))
+    assert all(abs(Rational(*ratio(x)) - y) < Rational(1, 10**30) * max(1, abs(y)) if x else y == 0 or abs(y) < 1e-30
+               for x, y in zip(numbers, expected))
 
 
 def test_waves_are_recognised():
