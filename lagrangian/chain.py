@@ -109,6 +109,12 @@ class CompiledChain:
     def __len__(self) -> int:
         return self._count
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "_kept"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state, _kept=local())
+
     def __repr__(self) -> str:
         named = zip(("damping", "springs"), self._joints, strict=True)
         features = [name for name, values in named if values is not None]

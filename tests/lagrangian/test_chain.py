@@ -1,6 +1,7 @@
 """Accelerations of a chain in O(n) against the dense equations, in every arithmetic, for every feature of a scene."""
 
 import json
+import pickle
 from pathlib import Path
 
 import flint
@@ -267,6 +268,15 @@ def test_a_tension_free_fall_keeps_every_rod_from_turning():
     chain = CompiledChain([1, 2, 3], [1] * 3, [0.5] * 3, [0.6] * 3, 9.81, (0, -9.81))
 
     assert (chain.acceleration(0, [0.3, 1.1, 2.0], [0, 0, 0]) == 0).all()
+
+
+def test_a_chain_can_be_sent_to_another_process():
+    """pickle gives the same chain, drive in waves included."""
+    chain = Scene([Rod.uniform(1, 2)] * 3, Support(eta=cos(3 * t)), 10, t=t).compile()
+    copy = pickle.loads(pickle.dumps(chain))
+    state = 0.4, [0.1, 0.2, 0.3], [1.0, 2.0, 3.0]
+
+    assert (copy.acceleration(*state) == chain.acceleration(*state)).all()
 
 
 def test_model_is_the_least_that_the_chain_requires():

@@ -262,6 +262,17 @@ def test_other_methods_give_the_same_motion_and_say_how_wrong_they_are(method):
         assert abs(other.theta - mine.theta).max() <= other.error[-1] < 1e-3
 
 
+def test_heyoka_gives_the_same_motion_where_it_is_installed():
+    """The recursion run on heyoka's expressions: a driven, damped triple rod."""
+    pytest.importorskip("heyoka")
+    drive = Support(sin(2 * t) / 5, cos(3 * t) / 10)
+    scene = Scene([Rod.uniform(1, 1)] * 3, drive, 10, False, [Rational(1, 10)] * 3, None, t)
+    mine, other = (simulate(scene.compile(), [1, 2, 1], [0, 0, 0], [0, 1, 2], accuracy=1e-10, method=method)
+                   for method in ("taylor", "heyoka"))
+
+    assert abs(mine.theta - other.theta).max() <= mine.error[-1] + other.error[-1] < 1e-9
+
+
 @measured
 @given(st.data())
 def test_small_swings_follow_the_linear_model_to_third_order(data):
