@@ -31,6 +31,7 @@ from fastpicard.picard import FundamentalMatrix, PicardIterate, fast_picard, pic
 from fastpicard.series import PoissonSeries
 from fastpicard.spectrum import Multiplier
 from fastpicard.stability import Verdict
+from fastpicard.tubes import Tube, Tubes, tubes
 
 __version__ = "0.1.0"
 
@@ -51,6 +52,8 @@ __all__ = [
     "Root",
     "SeriesMatrix",
     "ShapeError",
+    "Tube",
+    "Tubes",
     "Verdict",
     "boundaries",
     "certify",
@@ -65,4 +68,5 @@ __all__ = [
     "new_integrate",
     "picard",
     "product_to_sum",
+    "tubes",
 ]

@@ -28,7 +28,7 @@ from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.local import BITS, LocalMap, Rectangles, amplitudes, common_bound, convex, grid, shortened
+from fastpicard.local import BITS, LocalMap, Rectangles, amplitudes, common_bound, convex, grid, order_for, shortened
 from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
 from fastpicard.taylormodels import Models, joined, size, stacked
@@ -271,28 +271,13 @@ def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[lis
     majorant = common_bound([amplitudes(chart, member, boxes) for member in chart.members])
     with ctx.workprec(BITS):
         period = chart.period / (2 if rule.half else 1)
-        order = _order(majorant, period)
+        order = order_for(majorant, period, REMAINDER)
         error = max(upper_float(x.upper()) for x in a_priori(majorant, period, order).entries())
         F = chart.F.to_order(order)
         collapsed = Collapsed([modes for row in rule.entries(F) for modes in row], F.t)
         maps = [LocalMap(chart.polynomials(collapsed, member), [error] * (F.shape[0] * F.shape[1]))
                 for member in chart.members]
     return maps, order, error
-
-
-def _order(majorant: Any, period: Any, tol: float = REMAINDER) -> int:
-    high = 8
-    while not _largest(majorant, period, high) <= tol:
-        high *= 2
-    low = high // 2
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if _largest(majorant, period, middle) <= tol else (middle, high)
-    return high
-
-
-def _largest(majorant: Any, period: Any, n: int) -> float:
-    return max(upper_float(x.upper()) for x in a_priori(majorant, period, n).entries())
 
 
 def _functions(rule: Criterion, maps: list[LocalMap], boxes: Rectangles, degree: int, rows: int) -> Models:

@@ -26,6 +26,7 @@ from flint import arb, arb_mat, ctx
 from fastpicard.charted import Axis, Charted, Exponents, Member
 from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
+from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
 
 Array = Any
@@ -164,7 +165,31 @@ def common_bound(bounds: list[Array]) -> Harmonics:
                             for i in range(size) for j in range(size) if largest[i, j]})
 
 
+def order_for(majorant: Harmonics, period: Any, tol: float) -> int:
+    """The smallest order whose a-priori remainder is at most ``tol`` in every entry."""
+    high = 8
+    while not _largest(majorant, period, high) <= tol:
+        high *= 2
+    low = high // 2
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if _largest(majorant, period, middle) <= tol else (middle, high)
+    return high
+
+
+def _largest(majorant: Harmonics, period: Any, n: int) -> float:
+    return max(upper_float(x.upper()) for x in a_priori(majorant, period, n).entries())
+
+
 # -- models --------------------------------------------------------------------
+
+
+def shift(c: Any, r: Any, degree: int, n: int) -> Any:
+    """``S(c, r)`` in balls: shape (degree + 1, n)."""
+    powers = [c**i if i else arb(1) for i in range(n)]
+    sides = [r**k if k else arb(1) for k in range(degree + 1)]
+    return arb_mat([[powers[i - k] * math.comb(i, k) * sides[k] if i >= k else arb(0) for i in range(n)]
+                    for k in range(degree + 1)])
 
 
 class LocalMap:
@@ -214,11 +239,7 @@ class LocalMap:
     def _shift(self, c: float, r: float, degree: int, axis: int) -> Any:
         key = c, r, degree, axis
         if key not in self._shifts:
-            n = self.shape[axis]
-            centre, half = arb(c), arb(r)
-            powers = [centre**i if i else arb(1) for i in range(n)]
-            self._shifts[key] = arb_mat([[powers[i - k] * math.comb(i, k) * half**k if i >= k else arb(0)
-                                          for i in range(n)] for k in range(degree + 1)])
+            self._shifts[key] = shift(arb(c), arb(r), degree, self.shape[axis])
         return self._shifts[key]
 
     def beyond(self, boxes: Rectangles, degree: int) -> Array:
