@@ -36,6 +36,7 @@ from fastpicard.vectorise import Collapsed
 
 Array = Any
 REMAINDER = 1e-13  # of every entry, on all rectangles that are not decided by convexity
+TAIL = 1e-10  # what a Taylor polynomial may leave out of an entry
 START = 12  # rectangles along each axis to begin with
 CHUNK = 8192  # rectangles at a time
 CODES: Mapping[str, int] = {"STABLE": 1, "UNSTABLE": -1, "UNDECIDED": 0}
@@ -312,7 +313,7 @@ def _chunks(state: _State, boxes: Rectangles, maps: list[LocalMap]) -> list[Chun
     found = []
     for round_ in range(16):
         beyond = _beyond(maps, boxes, degree)
-        large = beyond > ((1e-6 if rows == 2 else 1e-10) if round_ < 15 else np.inf)
+        large = beyond > (TAIL if round_ < 15 else np.inf)
         good = np.flatnonzero(~large)
         for start in range(0, len(good), 48):
             part = boxes.at(good[start:start + 48])

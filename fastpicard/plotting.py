@@ -34,7 +34,7 @@ def _key(ax: Any, entries: list[tuple[str, str]]) -> None:
     from matplotlib.patches import Patch
 
     ax.legend(handles=[Patch(facecolor=colour, edgecolor="0.5", label=label) for colour, label in entries],
-              loc="upper right", fontsize=9, framealpha=0.9)
+              loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=3, fontsize=9, frameon=False)
 
 
 def certified(chart: Any, ax: Any, xlabel: str | None, ylabel: str | None, title: str | None) -> Any:
