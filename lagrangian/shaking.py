@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 from sympy import Add, Expr, Integer, Mul, cos, expand, sin
+from sympy.core.function import AppliedUndef
 
 from .arithmetic import Arithmetic
-from .errors import DriveError
+from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
 from .scene import quantity, refuse_text
 
@@ -61,7 +62,12 @@ class Shaking:
         """The pair at a time, as floats or in ``arithmetic``."""
         number = arithmetic.number if arithmetic else _float
         if self.function is not None:
-            ax, ay = self.function(t, number)
+            given_pair = self.function(t, number)
+            try:
+                ax, ay = given_pair
+            except (TypeError, ValueError):
+                raise DriveError(f"support_acceleration is a function of t that gives the pair (xi'', eta''), and at "
+                                 f"t = {t} it gives {given_pair!r}.") from None
             return ax, ay
         ax, ay = (number(x) for x in self.constant)
         for wave in self.waves:
@@ -115,7 +121,18 @@ def shaking_of(given: Any) -> Shaking:
 
 
 def shaking_of_expressions(xi: Any, eta: Any, t: Any) -> Shaking:
-    """Two SymPy accelerations in the Symbol t, all other Symbols replaced already."""
+    """Two SymPy accelerations in the Symbol t, all other Symbols replaced already; raises QuantityError, DriveError."""
+    for expression in (xi, eta):
+        left = sorted(map(str, expression.free_symbols - {t}))
+        if left:
+            raise QuantityError(f"the support's acceleration {expression} holds the Symbol {left[0]}: give a number "
+                                f"for it, "
+                                f"as in scene.compile({{symbol: number}}).")
+        unknown = expression.atoms(AppliedUndef)
+        if unknown:
+            raise DriveError(f"the support moves by {sorted(map(str, unknown))[0]}, a function that is not given: "
+                             f"write the "
+                             f"motion, such as epsilon*cos(omega0*{t}).")
     try:
         constant: list[Any] = [Integer(0), Integer(0)]
         waves: dict[Any, list[Any]] = {}

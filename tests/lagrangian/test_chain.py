@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from sympy import (
     Dummy,
+    Function,
     Rational,
     cos,
     cosh,
@@ -26,7 +27,17 @@ from sympy import (
     tanh,
 )
 
-from lagrangian import CompiledChain, QuantityError, Rod, Scene, SceneError, Support, TextError, euler_lagrange
+from lagrangian import (
+    CompiledChain,
+    DriveError,
+    QuantityError,
+    Rod,
+    Scene,
+    SceneError,
+    Support,
+    TextError,
+    euler_lagrange,
+)
 from lagrangian.arithmetic import MPNumbers
 from lagrangian.errors import NotAQuantityError
 
@@ -34,7 +45,7 @@ t = symbols("t")
 DIGITS = 50
 CASES = json.loads((Path(__file__).parent / "cases" / "mechanics.json").read_text())["mechanics"]
 # An example derives equations and evaluates them at 50 digits, a tenth of a second for six rods.
-measured = settings(max_examples=min(100, settings.default.max_examples), deadline=None)
+measured = settings(max_examples=min(60, settings.default.max_examples), deadline=None)
 fractions = st.builds(Rational, st.integers(-20, 20), st.integers(1, 9))
 positive = st.builds(Rational, st.integers(1, 20), st.integers(1, 9))
 MOTIONS = [Rational(0), 3 * t**2 / 2, cos(2 * t) / 3, sin(3 * t + 1) - cos(t) / 2, t * sin(t), exp(-t) * cos(t),
@@ -336,6 +347,12 @@ def test_compile_says_which_symbol_has_no_value():
     m, l = symbols("m l")
     with pytest.raises(QuantityError, match="Symbol l"):
         Scene([Rod.bob(m, l)]).compile({m: 1})
+    with pytest.raises(QuantityError, match="Symbol m"):
+        Scene([Rod.bob(1, 1)], Support(eta=m * cos(l * t)), 1, t=t).compile({l: 2})
+    with pytest.raises(DriveError, match=r"xi\(t\)"):
+        Scene([Rod.bob(1, 1)], Support(Function("xi")(t)), 1, t=t).compile()
+    with pytest.raises(DriveError, match="pair"):
+        CompiledChain([1], [1], [1], [1], 9.81, lambda time: 3).acceleration(0, [0.1], [0.1])
     with pytest.raises(TextError):
         Scene([Rod.bob(m, l)]).compile({m: "1"})
     with pytest.raises(TextError):
