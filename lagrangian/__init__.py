@@ -1,7 +1,8 @@
-"""Chains of physical rods on a moving support: Lagrangian, equations of motion, small motions, normal modes.
+"""Chains of physical rods on a moving support: Lagrangian, equations of motion, small motions, large motions.
 
     rods -> Scene -> euler_lagrange -> linearize -> first_order -> P, tau, period
                                                  -> normal_modes -> one Mathieu equation a mode
+                  -> compile -> CompiledChain -> simulate -> Trajectory, with its own error
 
 >>> from sympy import cos, symbols
 >>> m, l, epsilon, omega0, t = symbols("m l epsilon omega0 t")
