@@ -313,7 +313,7 @@ def _chunks(state: _State, boxes: Rectangles, maps: list[LocalMap]) -> list[Chun
     found = []
     for round_ in range(16):
         beyond = _beyond(maps, boxes, degree)
-        large = beyond > (TAIL if round_ < 15 else np.inf)
+        large = beyond > ((TAIL if rows == 2 else TAIL / 100) if round_ < 15 else np.inf)
         good = np.flatnonzero(~large)
         for start in range(0, len(good), 48):
             part = boxes.at(good[start:start + 48])

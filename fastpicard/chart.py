@@ -6,6 +6,7 @@ For one degree of freedom the margin is ``2 - |trace|``; for modes, the least of
 ``min (2 - |rho|)`` over the real rho, and ``-max |Im rho|`` where one is not real; with damping, one minus the largest
 modulus of a multiplier.
 
+Where P reverses in time the trace is ``2 + 4 B C`` (module ``halfway``), from the n-th iterate at half the period.
 Two bounds make up the error of a trace: that of the evaluation (module ``vectorise``) and the remainder of the iterate,
 here the a-priori one at every point: ``sum over k > n of (Pbar T)**k / k!``, which for ``y'' + s(t) y = 0`` has
 ``sqrt(sup |s|) T`` for ``Pbar T``.  Where ``y'' = q y`` with q > 0 at all times, unstable by convexity, none is needed.
@@ -27,7 +28,7 @@ from fastpicard.charted import Charted, Member, read_chart
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import pairs
+from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.local import BITS, Rectangles, convex, span_at
 from fastpicard.vectorise import Collapsed, Evaluator
 
@@ -60,7 +61,7 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
 
     Notes
     -----
-    A million points of one rod take a second or two.  What is proved for whole rectangles is :func:`certify`.
+    A million points of one rod take a second.  What is proved for whole rectangles is :func:`certify`.
 
     Examples
     --------
@@ -79,7 +80,7 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
     paired, _ = pairs(problem.F._P)
     scalar = paired and problem.F.shape == (2, 2)
-    compute = _by_trace if scalar else _by_matrix
+    compute = _by_matrix if not scalar else _by_factors if reversal(problem.F._P) == (1, -1) else _by_trace
     best: list[Array] | None = None
     for member in problem.members:
         found = list(compute(problem, member, grid, paired))
@@ -148,15 +149,49 @@ def _by_trace(problem: Charted, member: Member, grid: list[Array], paired: bool)
     return trace, np.where(np.isnan(trace), np.nan, 2 - abs(trace)), error
 
 
-def _remainder(problem: Charted, member: Member, grid: list[Array]) -> Array:
-    """A bound of the entries of ``Phi - Phi_n`` at every point: the a-priori sum with the norm of the balanced P."""
+def _by_factors(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
+    """``trace = 2 + 4 B C`` from half the period: half the terms, and a far smaller remainder."""
+    np = numpy()
+    half = half_period(problem.F)
+    values, bounds = _evaluated(problem, member, Collapsed([half[0][1], half[1][0]], problem.F.t), grid)
+    left, right = values
+    with np.errstate(all="ignore"):
+        down, up = _balance(problem, member, grid)
+        tail = _remainder(problem, member, grid, 0.5)
+        slack = [bounds[0] + tail * down, bounds[1] + tail * up]
+        trace = 2 + 4 * left * right
+        error = 4 * (abs(left) * slack[1] + abs(right) * slack[0] + slack[0] * slack[1]) + 2.0**-46 * (1 + abs(trace))
+    return trace, np.where(np.isnan(trace), np.nan, 2 - abs(trace)), error
+
+
+def _balance(problem: Charted, member: Member, grid: list[Array]) -> tuple[Array, Array]:
+    """``sqrt(p12/p21)`` and its reciprocal: what the entries off the diagonal have beside ``s**k / k!``."""
+    np = numpy()
+    bound = _amplitudes(problem, member, grid)
+    least = 1e-300
+    return (np.sqrt(bound[0, 1] / np.maximum(bound[1, 0], least)), np.sqrt(bound[1, 0] / np.maximum(bound[0, 1], least)))
+
+
+def _amplitudes(problem: Charted, member: Member, grid: list[Array]) -> Array:
+    """``sup |P_ij|`` at every point: shape (size, size, points)."""
     np = numpy()
     with ctx.workprec(BITS):
         waves = problem.waves(member)
-        length = float(problem.period)
-        bound = np.zeros((*problem.F.shape, len(grid[0])))
-        for (i, j), parts in waves.items():
-            bound[i, j] = sum((abs(span_at(problem, terms, grid)) for terms in parts.values()), np.zeros(len(grid[0])))
+    bound = np.zeros((*problem.F.shape, len(grid[0])))
+    for (i, j), parts in waves.items():
+        bound[i, j] = sum((abs(span_at(problem, terms, grid)) for terms in parts.values()), np.zeros(len(grid[0])))
+    return bound
+
+
+def _remainder(problem: Charted, member: Member, grid: list[Array], part: float = 1.0) -> Array:
+    """A bound of the entries of ``Phi - Phi_n`` after a part of the period: the a-priori sum.
+
+    For second order, of the diagonal; the others have the factors of :func:`_balance` beside.
+    """
+    np = numpy()
+    with ctx.workprec(BITS):
+        length = part * float(problem.period) * (1 + 2.0**-40)
+    bound = _amplitudes(problem, member, grid)
     if problem.F.shape == (2, 2) and not bound[0, 0].any() and not bound[1, 1].any():
         # the terms of the diagonal are s**k / k! for even k; only they enter the trace
         return _tail(np.sqrt(bound[0, 1] * bound[1, 0]) * length, problem.F.n)

@@ -27,7 +27,7 @@ from typing import Any
 
 from flint import fmpq
 
-from fastpicard.determinants import determinant, hermite, power_sums, product, sums_of_rho
+from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, product, sums_of_rho
 from fastpicard.evaluate import numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import Signs, half_period, pairs, reversal
@@ -113,7 +113,8 @@ def _strictly_inside(signs: Array) -> Array:
 
 def _reversible(signs: Signs, form: Any) -> Criterion:
     """With ``X**-1 = W**-1 X' W = [[a, b], [c, d]]``: ``M = [[a A - b C, a B - b D], [d C - c A, ...]]``,
-    ``M - 1 = [[-2 b C, .]]``, ``M + 1 = [[2 a A, .]]``, so ``p(2) = det(4 b C)`` and ``(-1)**N p(-2) = det(4 a A)``.
+    ``M - 1 = [[-2 b C, .]]``, ``M + 1 = [[2 a A, .]]``, so ``p(2) = det(4 b C)`` and ``(-1)**N p(-2) = det(4 a A)``,
+    and the ``sigma = 2 - rho`` are the eigenvalues of ``4 b C``.
 
     ``M - 1/M`` has the blocks ``2 M12`` and ``2 M21`` off the diagonal, and of W only the blocks off the diagonal are
     taken, which are an invariant form by themselves.
@@ -126,10 +127,10 @@ def _reversible(signs: Signs, form: Any) -> Criterion:
         back = _weighted(inverse, _weighted(form.transpose(), rows, True), False)
         (A, B), (C, D) = ([_block(rows, i, j) for j in (plus, minus)] for i in (plus, minus))
         (a, b), (c, d) = ([_block(back, i, j) for j in (plus, minus)] for i in (plus, minus))
-        rho = _doubled(_difference(product(a, A), product(b, C)))
+        sigma = [[x * 4.0 for x in row] for row in product(b, C)]
         M12, M21 = _difference(product(a, B), product(b, D)), _difference(product(d, C), product(c, A))
-        sums = power_sums(rho, 2 * n)
-        first, second = (_models(hermite(sums, n, beyond), sums[0]) for beyond in (False, True))
+        sums = power_sums(sigma, 2 * n)
+        first, second = _models(hermite(sums, n, False), sums[0]), hermite_from_zero(sums, n)
         minors = [_minor(first, k) for k in range(2, n + 1)] + [_minor(second, k) for k in range(1, n)]
         forms = [_minor(_weighted_block(form, i, j, X), k)
                  for i, j, X in ((plus, minus, M21), (minus, plus, M12)) for k in range(1, n + 1)]
@@ -178,10 +179,6 @@ def _block(rows: Rows, i: list[int], j: list[int]) -> Rows:
 
 def _difference(left: Rows, right: Rows) -> Rows:
     return [[x - y for x, y in zip(*pair, strict=True)] for pair in zip(left, right, strict=True)]
-
-
-def _doubled(rows: Rows) -> Rows:
-    return [[x * 2.0 for x in row] for row in rows]
 
 
 def _weighted(weights: Any, rows: Rows, transposed: bool) -> Rows:

@@ -12,6 +12,8 @@ Nothing is divided, so what holds for numbers holds for functions:
       all rho_i real and in [-2, 2]              =>   H and G positive semidefinite, every principal minor >= 0.
 
   (Real rho: read off.  A pair of complex ones makes the quadratic form of H indefinite, Hermite 1856.)
+  The same for ``sigma_i = 2 - rho_i`` in (0, 4) has ``G_jk = 4 s_{j+k+1} - s_{j+k+2}``: where all rho are near 2
+  (slow motions) the sigma are small numbers, of which no digits are lost.
   ``det H`` is the discriminant and ``det G = det H p(2) p(-2) (-1)**N``.
 """
 
@@ -106,3 +108,9 @@ def hermite(sums: Sequence[Any], size: int, beyond: bool) -> list[list[Any]]:
     if beyond:
         return [[s[j + k + 2] * -1 + (s[j + k] * 4) for k in range(size)] for j in range(size)]
     return [[s[j + k] for k in range(size)] for j in range(size)]
+
+
+def hermite_from_zero(sums: Sequence[Any], size: int) -> list[list[Any]]:
+    """``G`` with entries ``4 s_{j+k+1} - s_{j+k+2}``: positive definite with ``H`` if all numbers are in (0, 4)."""
+    s = [size, *sums]
+    return [[s[j + k + 2] * -1 + (s[j + k + 1] * 4) for k in range(size)] for j in range(size)]

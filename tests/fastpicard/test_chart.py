@@ -11,14 +11,14 @@ from fastpicard.plotting import raster
 
 matplotlib.use("Agg")
 P = Matrix([[0, 1], [-a - b * cos(t), 0]])
-MATHIEU, ROUGH = FloquetMatrix(P, t, 40), FloquetMatrix(P, t, 20)
+MATHIEU, ROUGH = FloquetMatrix(P, t, 40), FloquetMatrix(P, t, 12)
 MODES = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))]
 
 
 @pytest.mark.parametrize("x, y, more", [((a, -1, 2), (b, 0, 2), {}), ((h, 0, 0.1), (v, 0.1, 100), {"modes": MODES})])
 @pytest.mark.parametrize("F", [MATHIEU, ROUGH])
 def test_pixels_agree_with_certified_cells(F, x, y, more):
-    """Wherever both decide; at order 20 as well, where the error bound says what the iterate cannot know."""
+    """Wherever both decide; at order 12 as well, where the error bound says what the iterate cannot know."""
     data, proved = chart(F, x, y, points=(97, 89), **more), certify(F, x, y, undecided=1e-3, **more)
     first, second = data[str(x[0])].values, data[str(y[0])].values
     for i in range(0, 89, 4):
@@ -27,7 +27,7 @@ def test_pixels_agree_with_certified_cells(F, x, y, more):
 
 
 def test_errors_bound_the_true_margin():
-    """At order 20 against the true trace."""
+    """At order 12 against the true trace."""
     data = chart(ROUGH, (a, -1, 3), (b, 0, 2), points=(7, 5))
     for y in data["b"].values:
         for x in data["a"].values:
@@ -37,11 +37,11 @@ def test_errors_bound_the_true_margin():
 
 
 def test_undecided_is_shown_where_truncation_matters():
-    """The seventh boundary of Out[26], 2.2506565 at b = 0.1, is none that twenty iterates may claim."""
+    """The seventh boundary of Out[26], 2.2506565 at b = 0.1, is none that twelve iterates may claim."""
     data = chart(ROUGH, (a, 2, 3), (b, 0, 0.2), points=(20, 20))
 
     assert (data["verdict"] == 0).all()
-    assert data.attrs["order"] == 20
+    assert data.attrs["order"] == 12
 
 
 def test_coupled_and_damped_systems():
