@@ -22,8 +22,8 @@ def main() -> None:
     F = FloquetMatrix(P, t, 40)
     roots = [(f, f.root(b, (0.3, 0.6), {a: 0}, digits=25)) for f in boundaries(F)[2:3]]
     for f, root in roots:
-        print(f"boundary {f.label} {f.parity}: q_max = 2 b = {nstr(2 * root.value, 24)}, proved to {2 * root.error:.0e}, "
-              f"{root.evaluations} evaluations")
+        print(f"boundary {f.label} {f.parity}: q_max = 2 b = {nstr(2 * root.value, 24)}, proved to "
+              f"{2 * root.error:.0e}, {root.evaluations} evaluations")
     figure, axes = plt.subplots(1, 2, figsize=(13, 5.5), constrained_layout=True)
     whole = certify(F, (a, -1, 5), (b, 0, 6), seconds=25)
     print(whole)

@@ -168,8 +168,8 @@ def _balance(problem: Charted, member: Member, grid: list[Array]) -> tuple[Array
     """``sqrt(p12/p21)`` and its reciprocal: what the entries off the diagonal have beside ``s**k / k!``."""
     np = numpy()
     bound = _amplitudes(problem, member, grid)
-    least = 1e-300
-    return (np.sqrt(bound[0, 1] / np.maximum(bound[1, 0], least)), np.sqrt(bound[1, 0] / np.maximum(bound[0, 1], least)))
+    first, second = (np.maximum(z, 1e-300) for z in (bound[0, 1], bound[1, 0]))
+    return np.sqrt(bound[0, 1] / second), np.sqrt(bound[1, 0] / first)
 
 
 def _amplitudes(problem: Charted, member: Member, grid: list[Array]) -> Array:
