@@ -114,7 +114,8 @@ def _strictly_inside(signs: Array) -> Array:
 def _reversible(signs: Signs, form: Any) -> Criterion:
     """With ``X**-1 = W**-1 X' W = [[a, b], [c, d]]``: ``M = [[a A - b C, a B - b D], [d C - c A, ...]]``,
     ``M - 1 = [[-2 b C, .]]``, ``M + 1 = [[2 a A, .]]``, so ``p(2) = det(4 b C)`` and ``(-1)**N p(-2) = det(4 a A)``,
-    and the ``sigma = 2 - rho`` are the eigenvalues of ``4 b C``.
+    the ``sigma = 2 - rho`` are the eigenvalues of ``4 b C``, and the ``2 + rho`` those of ``4 a A``.  Where these are
+    real and not negative, so are their elementary symmetric functions.
 
     ``M - 1/M`` has the blocks ``2 M12`` and ``2 M21`` off the diagonal, and of W only the blocks off the diagonal are
     taken, which are an invariant form by themselves.
@@ -134,18 +135,32 @@ def _reversible(signs: Signs, form: Any) -> Criterion:
         minors = [_minor(first, k) for k in range(2, n + 1)] + [_minor(second, k) for k in range(1, n)]
         forms = [_minor(_weighted_block(form, i, j, X), k)
                  for i, j, X in ((plus, minus, M21), (minus, plus, M12)) for k in range(1, n + 1)]
-        return [determinant(b), determinant(C), determinant(a), determinant(A), *minors, *forms]
+        tau = [[x * 4.0 for x in row] for row in product(a, A)]
+        symmetric = _elementary(sums[:n - 1]) + _elementary(power_sums(tau, n - 1))
+        return [determinant(b), determinant(C), determinant(a), determinant(A), *minors, *forms, *symmetric]
 
     def verdicts(found: Array) -> Array:
         np = numpy()
-        below, above, minors, forms = found[0] * found[1], found[2] * found[3], found[4:2 + 2 * n], found[2 + 2 * n:]
-        bad = (below < 0) | (above < 0) | (minors < 0).any(axis=0)
+        below, above, minors = found[0] * found[1], found[2] * found[3], found[4:2 + 2 * n]
+        forms, symmetric = found[2 + 2 * n:2 + 4 * n], found[2 + 4 * n:]
+        bad = (below < 0) | (above < 0) | (minors < 0).any(axis=0) | (symmetric < 0).any(axis=0)
         good = (below > 0) & (above > 0) & (minors > 0).all(axis=0)
         one, other = _definite(forms[:n]), _definite(forms[n:])
         good |= (one != 0) & (one == other)
         return np.where(bad, -1, np.where(good, 1, 0))
 
     return Criterion("half-period factors, Hermite's minors, invariant form", True, half_period, functions, verdicts)
+
+
+def _elementary(sums: list[Any]) -> list[Any]:
+    """The elementary symmetric functions ``e_1, e_2, ...`` from power sums (Newton)."""
+    e = list(sums[:1])
+    for k in range(2, len(sums) + 1):
+        total = sums[k - 1] * (1.0 if k % 2 else -1.0)
+        for j in range(1, k):
+            total = total + e[k - j - 1] * sums[j - 1] * (1.0 if j % 2 else -1.0)
+        e.append(times(total, fmpq(1, k)))
+    return e
 
 
 def _paired(n: int) -> Criterion:
