@@ -10,7 +10,7 @@ The order in which the files are best read, which is the order in which they may
 ``setup.cfg`` and is held by a test of the imports.
 """
 
-from fastpicard.boundaries import Boundary, Root, boundaries
+from fastpicard.boundaries import Boundary, Root, boundaries, crossing
 from fastpicard.certify import CertifiedChart, certify
 from fastpicard.chart import chart
 from fastpicard.errors import (
@@ -58,6 +58,7 @@ __all__ = [
     "boundaries",
     "certify",
     "chart",
+    "crossing",
     "fast_picard",
     "gather",
     "mathieu_a",

@@ -21,7 +21,7 @@ from itertools import pairwise
 from math import hypot
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
@@ -32,7 +32,7 @@ from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.harmonics import harmonics
 from fastpicard.modes import Modes
-from fastpicard.remainder import a_posteriori
+from fastpicard.remainder import a_posteriori, a_priori
 from fastpicard.ring import expression_of
 from fastpicard.series import PoissonSeries
 from fastpicard.vectorise import Collapsed
@@ -195,7 +195,7 @@ class Boundary:
         """The value and derivatives in balls; with ``slack``, balls that contain those of the true function."""
         parts = [self._of(s).balls(dict(values)) for s in (None, *symbols)]
         if slack is not None:
-            parts[0] = [x + arb(0, e) for x, e in zip(parts[0], slack, strict=True)]
+            parts = [[x + arb(0, e) for x, e in zip(part, slack, strict=True)] for part in parts]
         numbers = [Dual(list(x)) for x in zip(*parts, strict=True)]
         parts_of: list[Any] = self._combine(_rows(numbers, self._columns)).parts
         return parts_of
@@ -360,6 +360,90 @@ class Boundary:
         return f"<Boundary {kind} in {', '.join(map(str, self.symbols))}, from {self._F!r}>"
 
 
+# -- two curves ----------------------------------------------------------------
+
+
+def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, Any],
+             fixed: Values | None = None) -> dict[Symbol, Any]:
+    """Where two boundaries cross: balls in which the true curves have exactly one common point.
+
+    Where ``+1`` even and odd cross, or ``-1`` even and odd, both periodic solutions coexist: the unstable pocket
+    between them closes.
+
+    Parameters
+    ----------
+    f, g : Boundary, of one FloquetMatrix
+    x, y : Symbol
+    start : (x, y)          near the crossing
+    fixed : {Symbol: number}
+
+    Returns
+    -------
+    {x: arb, y: arb}
+
+    Raises
+    ------
+    BadInputError
+        if Newton's method does not lead to a crossing that can be proved.
+
+    Notes
+    -----
+    Newton's operator in balls, ``N = c - J(X)**-1 (f, g)(c)``: if it maps the box X into itself there is one zero in
+    it.  The remainder of the iterate is in both; that of J by Cauchy, from parameters larger by 1.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, cos
+    >>> from sympy.abc import a, b, t
+    >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t) - cos(2*t), 0]]), t, 40)
+    >>> even, odd = boundaries(F)[2:]
+    >>> found = crossing(even, odd, a, b, (0.4, 1.4))
+    >>> float(found[a].rad()) < 1e-12
+    True
+    """
+    names = (x, y)
+    exact = exact_values({**(fixed or {}), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
+    with ctx.workprec(192):
+        center = [_exact(z) for z in start]
+        for _ in range(40):
+            value, slope = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, None)
+            move = slope.solve(value) if slope.det() != 0 else None
+            if move is None:
+                break
+            center = [(c - move[k, 0]).mid() for k, c in enumerate(center)]
+            if all(abs(move[k, 0]) < arb(2) ** -120 for k in (0, 1)):
+                break
+        slack = _wide_remainder(f, {**exact, **dict(zip(names, center, strict=True))})
+        for exponent in (-60, -48, -36, -24):
+            box = [c + arb(0, arb(2) ** exponent) for c in center]
+            value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slack)
+            _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slack)
+            try:
+                step = slope.solve(value)
+            except ZeroDivisionError:
+                continue
+            image = [c - step[k, 0] for k, c in enumerate(center)]
+            if all(z.contains_interior(w) for z, w in zip(box, image, strict=True)):
+                return dict(zip(names, image, strict=True))
+    raise BadInputError(f"the curves must cross near {start}, but no crossing is proved there.  Start nearer, or take "
+                        "a FloquetMatrix of higher order.")
+
+
+def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[Any, Any], slack: Any) -> Any:
+    """Values and Jacobian of two functions."""
+    rows = [part._dual(values, names, None if slack is None else [slack] * (len(part._entries) * part._columns))
+            for part in (f, g)]
+    return arb_mat([[row[0]] for row in rows]), arb_mat([row[1:] for row in rows])
+
+
+def _wide_remainder(f: Boundary, values: dict[Any, Any]) -> Any:
+    """The remainder for all complex parameters within 1, hence of derivatives, too."""
+    wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1).upper()) for s, v in values.items()}
+    period = f._F._at(values)[1]
+    bound = a_priori(harmonics(f._F._P, wide), period / 2 if f._half else period, f._F.n)
+    return max((entry.upper() for entry in bound.entries()), default=arb(0))
+
+
 def _exact(value: Any) -> Any:
     number = exact_number(value, "a coordinate")
     return arb(number) if isinstance(number, fmpq) else number
@@ -406,4 +490,4 @@ class Dual:
         return Dual([f * g, *(f * dg + df * g for df, dg in zip(self.parts[1:], other.parts[1:], strict=True))])
 
 
-__all__ = ["Boundary", "Root", "boundaries"]
+__all__ = ["Boundary", "Root", "boundaries", "crossing"]

@@ -7,7 +7,7 @@ from sympy import Matrix, Rational, cos, diff, sin
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, FloquetMatrix, mathieu_a, mathieu_b
-from fastpicard.boundaries import boundaries
+from fastpicard.boundaries import boundaries, crossing
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 
 MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 40)
@@ -102,6 +102,22 @@ def test_without_reversal_the_boundaries_are_whole():
     at = {a: 0.3, b: 0.4}
     assert plus(at) == pytest.approx(2 - F.trace_at(at), abs=1e-6)
     assert minus(at) == pytest.approx(2 + F.trace_at(at), abs=1e-6)
+
+
+def test_pockets_close_where_ince_says():
+    """y'' + (a + b cos t + cos 2t) y: even and odd boundaries cross at b = k sqrt(2), by the theory of Ince's equation.
+
+    (Whittaker-Hill: ``b**2 = 2 k**2 eps``, odd k for +1, even k for -1.)  And a start that leads nowhere.
+    """
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t), 0]]), t, 44)
+    even, odd, even_minus, odd_minus = boundaries(F)
+    plus = crossing(even, odd, a, b, (1.25, 1.4))
+    minus = crossing(even_minus, odd_minus, a, b, (2.7, 2.8))
+
+    assert (plus[b] ** 2).contains(2) and float(plus[b].rad()) < 1e-12
+    assert (minus[b] ** 2).contains(8) and float(minus[b].rad()) < 1e-11
+    with pytest.raises(BadInputError, match="cross"):
+        crossing(even, odd, a, b, (-40, 0.1))
 
 
 def test_damping_has_no_such_boundaries():
