@@ -16,7 +16,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flint import arb, ctx
@@ -55,6 +55,7 @@ class CertifiedChart:
     remainder : float               its proved distance from the truth, in every entry
     criterion : str                 what was asked of the signs
     seconds : float                 what it took, building included
+    tubes : tuple of Tube           boundaries to draw, see :meth:`with_tubes`
     """
 
     x: Axis
@@ -102,6 +103,10 @@ class CertifiedChart:
         reason = (f"the point lies in a rectangle that is proved {name.lower()} by {self.criterion}" if code
                   else "the point lies in a rectangle that is not decided, or on the edge of two unlike ones")
         return Verdict(name, reason)
+
+    def with_tubes(self, tubes: Any) -> CertifiedChart:
+        """The same chart with the boundaries that :func:`tubes` found in the plane of its axes: lines of its plot."""
+        return replace(self, tubes=tuple(tubes.pieces))
 
     def plot(self, ax: Any = None, xlabel: str | None = None, ylabel: str | None = None,
              title: str | None = None) -> Any:

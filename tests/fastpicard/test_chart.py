@@ -6,7 +6,7 @@ import pytest
 from sympy import Matrix, Rational, cos, sqrt
 from sympy.abc import a, b, c, h, t, v
 
-from fastpicard import BadInputError, BadTypeError, FloquetMatrix, certify, chart
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, certify, chart, tubes
 from fastpicard.plotting import raster
 
 matplotlib.use("Agg")
@@ -64,9 +64,11 @@ def test_plots_are_drawn_with_labels():
     data = chart(MATHIEU, (a, -1, 2), (b, 0, 2), points=(20, 20))
     axes = data.plot(xlabel="stiffness a", ylabel="b", title="Mathieu")
     proved = certify(MATHIEU, (a, -1, 2), (b, 0, 2), undecided=1e-2)
-    other = proved.plot()
+    curves = tubes(MATHIEU, (a, 0, 0.5), (b, 0, 0.2))
+    other = proved.with_tubes(curves).plot()
     codes = raster(proved, 60, 40)
 
+    assert len(other.lines) == len(curves.pieces) > 0
     assert axes.get_xlabel() == "stiffness a" and other.get_xlabel() == "$a$"
     assert set(np.unique(codes)) == {-1, 0, 1}
     for i in range(0, 60, 7):
