@@ -91,9 +91,10 @@ class CertifiedChart:
         BadInputError
             if the point is outside the chart.
         """
-        px, py = (float(upper_float(_ball(exact_number(z, "a coordinate")))) for z in (x, y))
+        balls = [_ball(exact_number(z, "a coordinate")) for z in (x, y)]
+        (px, py), (qx, qy) = [-upper_float(-z) for z in balls], [upper_float(z) for z in balls]
         c = self.cells
-        inside = (c[:, 0] <= px) & (px <= c[:, 1]) & (c[:, 2] <= py) & (py <= c[:, 3])
+        inside = (c[:, 0] <= qx) & (px <= c[:, 1]) & (c[:, 2] <= qy) & (py <= c[:, 3])
         found = set(self.codes[inside].tolist())
         if not found:
             raise BadInputError(f"the point ({px}, {py}) must be in the chart {self.x.symbol} in [{self.x.lo}, "

@@ -22,7 +22,7 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_poly, arb_series, ctx
 from mpmath.libmp import dps_to_prec
-from sympy import Symbol
+from sympy import Matrix, Symbol
 
 from fastpicard.charted import Charted, Exponents, read_chart
 from fastpicard.criteria import criterion
@@ -146,6 +146,11 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     if chart.F.shape != (2, 2) or not rule.half or any(axis.power != 1 for axis in chart.axes):
         raise BadInputError("tubes are drawn of y'' + (a + q(t; b)) y = 0 with q even in t and whole powers of both "
                             "parameters, and this equation is not of that kind.  Use certify.")
+    slope = chart.F._P.as_matrix().diff(chart.axes[0].symbol)
+    if slope != Matrix([[0, 0], [-1, 0]]):
+        name = chart.axes[0].symbol
+        raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} is "
+                            f"{slope.tolist()}.  Choose as x the parameter that is added to q.")
     work = _Work(chart, radius)
     pieces = work.run()
     area = sum(2 * p.radius * (p.hi - p.lo) for p in pieces)

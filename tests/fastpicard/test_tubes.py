@@ -64,3 +64,9 @@ def test_what_has_no_graphs_is_refused():
     """A sine beside the cosine is not even."""
     with pytest.raises(BadInputError, match="even"):
         tubes(FloquetMatrix(Matrix([[0, 1], [-a - b * sin(t) - b * cos(2 * t), 0]]), t, 0), (a, 0, 1), (b, 0, 1))
+
+
+def test_the_first_axis_is_the_constant():
+    """Cauchy's estimate of the derivative's remainder is for a + q."""
+    with pytest.raises(BadInputError, match="added to q"):
+        tubes(MATHIEU, (b, 0, 1), (a, 0, 1))
