@@ -149,8 +149,8 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     slope = chart.F._P.as_matrix().diff(chart.axes[0].symbol)
     if slope != Matrix([[0, 0], [-1, 0]]):
         name = chart.axes[0].symbol
-        raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} is "
-                            f"{slope.tolist()}.  Choose as x the parameter that is added to q.")
+        raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} "
+                            f"is {slope.tolist()}.  Choose as x the parameter that is added to q.")
     work = _Work(chart, radius)
     pieces = work.run()
     area = sum(2 * p.radius * (p.hi - p.lo) for p in pieces)
