@@ -1,7 +1,8 @@
 """Hypothesis profiles: ``dev`` while writing, ``ci`` before landing, ``nightly`` for the long run.
 
-``brief`` is for a second pass of the same laws with other ground types; ``HYPOTHESIS_PROFILE=ci`` asks for 1000 examples a law, the same ones on every run.  There are no
-deadlines: times belong in ``benchmarks/``.
+``HYPOTHESIS_PROFILE=ci`` asks for 1000 examples a law, the same ones on every run; ``brief`` is for a
+second pass of the same laws with other ground types.  There are no deadlines: times belong in
+``benchmarks/``.
 """
 
 import os
