@@ -51,7 +51,7 @@ def disagreements(chart, F, count, fixed=None, matrix=None):
 ], ids=["Mathieu", "one rod", "two waves", "not reversible", "damped", "damping as axis"])
 def test_certified_cells_never_contradict_ball_taylor(F, x, y, fixed):
     """The verdict on random points in random cells, by the true equation integrated in balls."""
-    chart = certify(F, x, y, fixed=fixed, undecided=2e-3, seconds=60)
+    chart = certify(F, x, y, fixed=fixed, undecided=2e-3, seconds=600)
 
     assert chart.undecided < 2e-3
     assert not disagreements(chart, F, 25, fixed)
@@ -59,7 +59,7 @@ def test_certified_cells_never_contradict_ball_taylor(F, x, y, fixed):
 
 def test_cells_tile_the_chart():
     """Areas add up, and a random point lies in one cell."""
-    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), undecided=1e-2)
+    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), undecided=1e-2, seconds=600)
     points = np.stack([GENERATOR.uniform(0, 0.5, 200), GENERATOR.uniform(0.1, 100, 200)])
     cells = chart.cells
     inside = ((cells[:, 0] <= points[0][:, None]) & (points[0][:, None] <= cells[:, 1])
@@ -76,7 +76,7 @@ def test_cells_tile_the_chart():
 ])
 def test_reference_points_of_one_rod(hh, vv, verdict):
     """Points whose traces are known to thirty digits; the article's (0.2, 40) among them."""
-    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), undecided=1e-3)
+    chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), undecided=1e-3, seconds=600)
 
     assert int(chart.verdict(Fraction(hh), Fraction(vv))) == verdict
 
@@ -84,7 +84,7 @@ def test_reference_points_of_one_rod(hh, vv, verdict):
 def test_two_rods_from_one_scalar_matrix():
     """mu = 3 -+ 6/sqrt(7): points of the reference set, and the two-rod system itself at random points."""
     modes = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))]
-    chart = certify(MATHIEU, (h, 0, 0.1), (v, 0.1, 100), modes=modes, undecided=5e-4)
+    chart = certify(MATHIEU, (h, 0, 0.1), (v, 0.1, 100), modes=modes, undecided=5e-4, seconds=600)
     S = Matrix([[18, -9], [-27, 24]]) / 7 * (-1 / v**2 + h * cos(t))
     coupled = FloquetMatrix(second_order(S), t, 0)
 
@@ -110,7 +110,7 @@ def joint_springs(rods):
 def test_coupled_rods(rods, x, y):
     """Hermite's minors and the invariant form, against the verdicts of balls."""
     F = joint_springs(rods)
-    chart = certify(F, x, y, undecided=5e-3, seconds=60)
+    chart = certify(F, x, y, undecided=5e-3, seconds=600)
 
     assert chart.undecided < 5e-3 and chart.fraction(Verdict.STABLE) > 0.05
     assert not disagreements(chart, F, 15)
@@ -130,7 +130,7 @@ def test_krein_collisions():
     F = resonance(1)
     assert F.verdict({c: Rational(16, 49), h: Rational(1, 10)}) == Verdict.UNSTABLE
     assert F.verdict({c: 16, h: Rational(1, 100)}) == Verdict.STABLE
-    chart = certify(F, (c, 0.3, 0.36), (h, 0.02, 0.12), undecided=5e-3, seconds=60)
+    chart = certify(F, (c, 0.3, 0.36), (h, 0.02, 0.12), undecided=5e-3, seconds=600)
     half = boundaries(F.to_order(40))
 
     assert chart.verdict(Fraction(16, 49), Fraction(1, 10)) == Verdict.UNSTABLE
@@ -149,7 +149,8 @@ def test_achesons_bounds_are_stable():
         mu = np.sort(np.linalg.eigvals(np.linalg.solve(A, B)).real)
         at_h, at_v = 0.449 / mu[-1], 1.1 * np.sqrt(2 / mu[0]) * mu[-1] / 0.449
         modes = [{a: -Rational(float(x)) / v**2, b: Rational(float(x)) * h} for x in mu]
-        chart = certify(MATHIEU, (h, 0.9 * at_h, at_h), (v, at_v / 0.9, 1.5 * at_v), modes=modes, undecided=1e-3)
+        x, y = (h, 0.9 * at_h, at_h), (v, at_v / 0.9, 1.5 * at_v)
+        chart = certify(MATHIEU, x, y, modes=modes, undecided=1e-3, seconds=600)
 
         assert chart.fraction(Verdict.STABLE) > 0.999 and chart.fraction(Verdict.UNSTABLE) == 0, n
 

@@ -19,7 +19,7 @@ MODES = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))
 @pytest.mark.parametrize("F", [MATHIEU, ROUGH])
 def test_pixels_agree_with_certified_cells(F, x, y, more):
     """Wherever both decide; at order 12 as well, where the error bound says what the iterate cannot know."""
-    data, proved = chart(F, x, y, points=(97, 89), **more), certify(F, x, y, undecided=1e-3, **more)
+    data, proved = chart(F, x, y, points=(97, 89), **more), certify(F, x, y, undecided=1e-3, seconds=600, **more)
     first, second = data[str(x[0])].values, data[str(y[0])].values
     for i in range(0, 89, 4):
         for j in range(0, 97, 4):
@@ -63,7 +63,7 @@ def test_plots_are_drawn_with_labels():
     """Both kinds of chart; undecided pixels are those of the cells."""
     data = chart(MATHIEU, (a, -1, 2), (b, 0, 2), points=(20, 20))
     axes = data.plot(xlabel="stiffness a", ylabel="b", title="Mathieu")
-    proved = certify(MATHIEU, (a, -1, 2), (b, 0, 2), undecided=1e-2)
+    proved = certify(MATHIEU, (a, -1, 2), (b, 0, 2), undecided=1e-2, seconds=600)
     curves = tubes(MATHIEU, (a, 0, 0.5), (b, 0, 0.2))
     other = proved.with_tubes(curves).plot()
     codes = raster(proved, 60, 40)

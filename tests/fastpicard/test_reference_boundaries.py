@@ -52,7 +52,7 @@ def test_points_of_rods_lie_in_cells_of_their_class(count):
     """One chart for each number of rods, from one scalar matrix."""
     points = [x.values[0] for x in CHARTED if int(x.values[0]["N"]) == count]
     widest, fastest = (1.3 * max(float(Rational(p[k])) for p in points) for k in ("h", "v"))
-    chart = certify(MATHIEU, (h, 0, widest), (v, 0.1, fastest), undecided=2e-5, seconds=60,
+    chart = certify(MATHIEU, (h, 0, widest), (v, 0.1, fastest), undecided=2e-5, seconds=600,
                     modes=[{a: -mu / v**2, b: mu * h} for mu in modes_of(count)])
     for p in points:
         assert chart.verdict(read(p["h"]), read(p["v"])).name.lower() == p["class"]
