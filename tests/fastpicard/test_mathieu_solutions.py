@@ -1,5 +1,7 @@
 """Solutions and exponents of Mathieu's equation: against SciPy where it is right, mpmath and closed forms."""
 
+import math
+
 import mpmath
 import pytest
 from flint import arb
@@ -34,7 +36,7 @@ def test_solutions_agree_with_an_integrator_of_another_house(a, q, z):
 
 
 @settings(max_examples=30)
-@given(st.floats(0.1, 30))
+@given(st.floats(0.1, 30).filter(lambda a: not math.sqrt(a).is_integer()))  # squares are on a boundary
 def test_without_q_they_are_circular(a):
     """cos sqrt(a) z, sin(sqrt(a) z)/sqrt(a), nu next to sqrt(a) modulo 2."""
     root = mpmath.sqrt(mpmath.mpf(a))
