@@ -35,9 +35,9 @@ from fastpicard.coordinates import Problem
 from fastpicard.evaluate import free_symbols
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import harmonics
-from fastpicard.increments import Entry, Rows, reflected, to_modes
+from fastpicard.increments import to_modes, without_frequencies
 from fastpicard.matrix import SeriesMatrix
-from fastpicard.modes import Modes, mask, orient
+from fastpicard.modes import Modes, orient
 from fastpicard.picard import PackedIncrements
 from fastpicard.ring import ONE, Polynomial, generator, multiply
 from fastpicard.spectrum import symplectic_forms
@@ -86,7 +86,7 @@ def _half_turns(F: FloquetMatrix, k: int, i: int, j: int) -> Modes:
     found = F._increments
     if isinstance(found, PackedIncrements):
         problem = found.problem
-        return to_modes(problem, _signed(problem, found.levels[k].columns[j][i], _unit_turns(F, problem)))
+        return to_modes(problem, without_frequencies(problem, found.levels[k].columns[j][i], _unit_turns(F, problem)))
     modes: Modes = {}
     for (kind, (frequency, phase), monomial), f in found.entry(k, i, j).items():
         turns = multiply(multiply(algebra.as_polynomial(frequency), F._length), _PER_TURN)
@@ -103,21 +103,3 @@ def _unit_turns(F: FloquetMatrix, problem: Problem) -> int:
     monomial, rate = problem.coordinates.unit
     turns = multiply(multiply({monomial: rate}, F._length), _PER_TURN)
     return int(turns[ONE].p) if list(turns) == [ONE] else 0
-
-
-def _signed(problem: Problem, entry: Entry, turns: int) -> Entry:
-    """The entry with ``cos(q w T/2) = (-1)**(q turns)`` put in."""
-    result: Entry = {}
-    for monomial, (scale, rows) in entry.items():
-        collapsed: Rows = {}
-        for (kind, angle), row in rows.items():
-            start = problem.coordinates.without_frequency(angle)
-            if problem.coordinates.frequency(angle) * turns % 2:
-                row = -row
-            if start < 0:
-                start, row = -start, reflected(kind, row)
-            old = collapsed.get((kind, start))
-            collapsed[kind, start] = row if old is None else old + row
-        result[monomial] = scale, {(kind, start): row if start else mask(kind, row)
-                                   for (kind, start), row in collapsed.items()}
-    return result

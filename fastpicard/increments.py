@@ -209,14 +209,20 @@ def _integral(product: Rows, divisors: _Divisors) -> Rows:
 # -- leaving the packed form --------------------------------------------------
 
 
-def without_frequencies(p: Problem, entry: Entry) -> Entry:
-    """The entry after whole turns of every angle: only powers of time and phases remain."""
+def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
+    """The entry after whole turns of every angle: only powers of time and phases remain.
+
+    With ``half_turns``, after a time in which the unit of frequency makes that many half turns: every wave of
+    frequency ``k`` then has the sign ``(-1)**(k half_turns)``.
+    """
     result: Entry = {}
     start_of = p.coordinates.without_frequency if p.coordinates.phases else _nowhere
     for monomial, (scale, rows) in entry.items():
         collapsed: Rows = {}
         for (kind, angle), row in rows.items():
             start = start_of(angle)
+            if half_turns and p.coordinates.frequency(angle) * half_turns % 2:
+                row = -row
             if start < 0:
                 start, row = -start, reflected(kind, row)
             old = collapsed.get((kind, start))

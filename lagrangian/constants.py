@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from sympy import Symbol, nan, oo, zoo
 
+from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .scene import quantity, refuse_text
 
@@ -33,13 +34,7 @@ def rod_row(m: Any, l: Any, H: Any, RR: Any) -> tuple[Any, ...]:
 
 def products(a: Any, b: Any, c: Any, d: Any) -> Any:
     """``a b - c d`` for arrays, as if rounded once: the low halves of the products are kept."""
-    def exact(x: Any, y: Any) -> tuple[Any, Any]:
-        split = 134217729.0
-        p, xt, yt = x * y, split * x, split * y
-        xh, yh = xt - (xt - x), yt - (yt - y)
-        xl, yl = x - xh, y - yh
-        return p, ((xh * yh - p) + xh * yl + xl * yh) + xl * yl
-    (p, pe), (q, qe) = exact(a, b), exact(c, d)
+    (p, pe), (q, qe) = product(a, b), product(c, d)
     return (p - q) + (pe - qe)
 
 

@@ -203,9 +203,8 @@ def _times(times: Any) -> tuple[Any, list[Any]]:
     found = np.array([float(x) for x in exact])
     steps = np.diff(found)
     if not len(found) or not ((steps >= 0).all() or (steps <= 0).all()):
-        raise SceneError("the t_span is a list of times that grow, or shrink for the motion backwards, with at least "
-                         "one "
-                         "of them: give times in order.")
+        raise SceneError(f"times must grow, or shrink for the motion backwards, and be at least one, but they are "
+                         f"{found.tolist()}: give times in order.")
     return found, exact
 
 

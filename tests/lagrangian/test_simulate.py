@@ -385,7 +385,7 @@ CHAIN = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], upright=False)
     ((CHAIN, ["1", 1], [0, 0], [0, 1]), {}, TextError, ["theta0[0]"]),
     ((CHAIN, [symbols("x"), 1], [0, 0], [0, 1]), {}, QuantityError, ["x", "number"]),
     ((CHAIN, [float("nan"), 1], [0, 0], [0, 1]), {}, QuantityError, ["finite"]),
-    ((CHAIN, [1, 1], [0, 0], [0, 2, 1]), {}, SceneError, ["t_span", "order"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 2, 1]), {}, SceneError, ["[0.0, 2.0, 1.0]", "order"]),
     ((CHAIN, [1, 1], [0, 0], []), {}, SceneError, ["at least one"]),
     ((CHAIN, [1, 1], [0, 0], 3), {}, SceneError, ["list of times"]),
     ((CHAIN, [1, 1], [0, 0], ["0", "1"]), {}, TextError, ["times[0]"]),
