@@ -10,9 +10,10 @@ The order in which the files are best read, which is the order in which they may
 ``setup.cfg`` and is held by a test of the imports.
 """
 
-from fastpicard.boundaries import Boundary, Root, boundaries, crossing
+from fastpicard.boundaries import Boundary, Root, boundaries
 from fastpicard.certify import CertifiedChart, certify
 from fastpicard.chart import chart
+from fastpicard.crossing import crossing
 from fastpicard.errors import (
     BadInputError,
     BadTypeError,

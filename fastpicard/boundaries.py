@@ -17,27 +17,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from math import hypot
 from typing import Any
 
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
+from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Values, check_digits, exact_number, exact_values, numpy, to_number, upper_float
+from fastpicard.evaluate import Values, check_digits, exact_values, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.harmonics import harmonics
 from fastpicard.modes import Modes
-from fastpicard.remainder import a_posteriori, a_priori
+from fastpicard.remainder import a_posteriori
 from fastpicard.ring import expression_of
 from fastpicard.series import PoissonSeries
 from fastpicard.vectorise import Collapsed
 
-MOST = 60  # evaluations of one root
 Matrix = list[list[Any]]
 
 
@@ -229,36 +227,13 @@ class Boundary:
         others = {s: v for s, v in (fixed or {}).items() if s != x}
         exact = exact_values({**others, x: 0}, self.symbols, self._F.t)
         with ctx.workprec(dps_to_prec(wanted) + 64):
-            value, count = self._newton(x, exact, [_exact(end) for end in bracket], arb(10) ** -wanted)
+            value, count = zero(lambda here: self._dual({**exact, x: here}, (x,)), bracket, arb(10) ** -wanted)
             dual = self._dual({**exact, x: value}, (x, *(s for s in self.symbols if s != x)))
             slopes = {s: to_number(-d / dual[1], None)
                       for s, d in zip((s for s in self.symbols if s != x), dual[2:], strict=True)}
             rounded = to_number(value, None if wanted <= 15 else wanted)
-            lost = abs(value - _exact(rounded)) + arb(self._proved(x, exact, value, dual))
+            lost = abs(value - exact_ball(rounded)) + arb(self._proved(x, exact, value, dual))
             return Root(rounded, upper_float(lost.upper()) if lost.is_finite() else float("inf"), count + 1, slopes)
-
-    def _newton(self, x: Symbol, exact: dict[Any, Any], bracket: list[Any], tol: Any) -> tuple[Any, int]:
-        lo, hi = sorted(bracket, key=float)
-        (f, df), (g, dg) = (self._dual({**exact, x: end}, (x,)) for end in (lo, hi))
-        if not f * g <= 0:
-            raise BadInputError(f"the function must change its sign between the ends {float(lo)} and {float(hi)}, but "
-                                f"it is {f.str(5)} and {g.str(5)} there.  Choose ends on both sides of the boundary.")
-        rising, count = bool(g > 0), 2
-        here, value, slope = (lo, f, df) if abs(f / df) < abs(g / dg) else (hi, g, dg)
-        while count < MOST:
-            step = value / slope if not slope.contains(0) else (hi - lo) * 2
-            new = (here - step).mid()
-            if not (new > lo and new < hi):
-                new = ((lo + hi) / 2).mid()
-            moved = abs(new - here)
-            value, slope = self._dual({**exact, x: new}, (x,))
-            count, here = count + 1, new
-            if value == 0 or value.contains(0) or abs(value / slope) < tol * (abs(here) + tol) and moved < 1:
-                break
-            lo, hi = (lo, here) if bool(value > 0) == rising else (here, hi)
-        if not slope.contains(0):
-            here = (here - value / slope).mid()
-        return here, count
 
     def _proved(self, x: Symbol, exact: dict[Any, Any], value: Any, dual: list[Any]) -> float:
         """A distance at which the true function is proved to have different signs on both sides."""
@@ -297,156 +272,24 @@ class Boundary:
         -------
         points, tangents : arrays, shape (m, 2) each
             every point to 1e-12 of the sides; tangents ``(dx, dy)``, in units of the sides, of length 1.
+
+        Raises
+        ------
+        BadInputError
+            if no boundary is found near ``start``.
         """
-        np = numpy()
-        box = [(s, float(lo), float(hi) - float(lo)) for s, lo, hi in (x, y)]
         exact = exact_values({**(fixed or {}), x[0]: 0, y[0]: 0}, self.symbols, self._F.t)
-        first = self._onto(box, exact, [(float(c) - lo) / w for c, (_, lo, w) in zip(start, box, strict=True)])
-        if first is None:
+        names, box = (x[0], y[0]), [(float(lo), float(hi) - float(lo)) for _, lo, hi in (x, y)]
+        found = curve(lambda *place: self._dual({**exact, **dict(zip(names, place, strict=True))}, names), box,
+                      (float(start[0]), float(start[1])), step)
+        if found is None:
             raise BadInputError(f"a boundary is followed from a point near it, but none was found near {start}.  Start "
                                 "from a root().")
-        halves = [self._one_way(box, exact, first, sign, step) for sign in (-1.0, 1.0)]
-        track = [*reversed(halves[0]), first, *halves[1]]
-        scale, origin = np.array([w for *_, w in box]), np.array([lo for _, lo, _ in box])
-        points = np.array([point for point, _ in track]) * scale + origin
-        tangents = np.array([tangent for _, tangent in track])
-        turned = [1.0]
-        for old, new in pairwise(tangents):
-            turned.append(turned[-1] * (1.0 if old @ new >= 0 else -1.0))
-        return points, tangents * np.array(turned)[:, None]
-
-    def _one_way(self, box: list[Any], exact: dict[Any, Any], first: Any, sign: float, step: float) -> list[Any]:
-        point, tangent = first
-        tangent = (sign * tangent[0], sign * tangent[1])
-        track: list[Any] = []
-        length = step
-        while len(track) < 100 / step:
-            new = self._onto(box, exact, [p + length * d for p, d in zip(point, tangent, strict=True)])
-            turn = new and new[1][0] * tangent[0] + new[1][1] * tangent[1]
-            if not new or abs(turn) < 0.98 or hypot(*(p - q for p, q in zip(new[0], point, strict=True))) > 2 * length:
-                length /= 2
-                if length < 1e-6:
-                    break
-                continue
-            if not all(-1e-12 <= c <= 1 + 1e-12 for c in new[0]):
-                break
-            direction = 1.0 if turn > 0 else -1.0
-            point, tangent = new[0], (direction * new[1][0], direction * new[1][1])
-            track.append((point, tangent))
-            length = min(step, 1.5 * length)
-            if len(track) > 3 and hypot(*(p - q for p, q in zip(point, first[0], strict=True))) < length / 2:
-                break
-        return track
-
-    def _onto(self, box: list[Any], exact: dict[Any, Any], at: list[float]) -> Any:
-        """The point of the curve that Newton's method along the gradient finds, and the tangent there."""
-        names = [s for s, *_ in box]
-        for _ in range(12):
-            values = {**exact, **{s: _exact(lo + c * w) for c, (s, lo, w) in zip(at, box, strict=True)}}
-            with ctx.workprec(128):
-                f, *slope = (to_number(part, None) for part in self._dual(values, names))
-            slope = [d * w for d, (*_, w) in zip(slope, box, strict=True)]
-            size = hypot(*slope)
-            if size == 0:
-                return None
-            move = [-f * d / size**2 for d in slope]
-            at = [c + m for c, m in zip(at, move, strict=True)]
-            if hypot(*move) < 1e-12:
-                return tuple(at), (-slope[1] / size, slope[0] / size)
-        return None
+        return found
 
     def __repr__(self) -> str:
         kind = f"{self.label} {self.parity}".strip()
         return f"<Boundary {kind} in {', '.join(map(str, self.symbols))}, from {self._F!r}>"
-
-
-# -- two curves ----------------------------------------------------------------
-
-
-def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, Any],
-             fixed: Values | None = None) -> dict[Symbol, Any]:
-    """Where two boundaries cross: balls in which the true curves have exactly one common point.
-
-    Where ``+1`` even and odd cross, or ``-1`` even and odd, both periodic solutions coexist: the unstable pocket
-    between them closes.
-
-    Parameters
-    ----------
-    f, g : Boundary, of one FloquetMatrix
-    x, y : Symbol
-    start : (x, y)          near the crossing
-    fixed : {Symbol: number}
-
-    Returns
-    -------
-    {x: arb, y: arb}
-
-    Raises
-    ------
-    BadInputError
-        if Newton's method does not lead to a crossing that can be proved.
-
-    Notes
-    -----
-    Newton's operator in balls, ``N = c - J(X)**-1 (f, g)(c)``: if it maps the box X into itself there is one zero in
-    it.  The remainder of the iterate is in both; that of J by Cauchy, from parameters larger by 1.
-
-    Examples
-    --------
-    >>> from sympy import Matrix, cos
-    >>> from sympy.abc import a, b, t
-    >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t) - cos(2*t), 0]]), t, 40)
-    >>> even, odd = boundaries(F)[2:]
-    >>> found = crossing(even, odd, a, b, (0.4, 1.4))
-    >>> float(found[a].rad()) < 1e-12
-    True
-    """
-    names = (x, y)
-    exact = exact_values({**(fixed or {}), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
-    with ctx.workprec(192):
-        center = [_exact(z) for z in start]
-        for _ in range(40):
-            value, slope = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, None)
-            move = slope.solve(value) if slope.det() != 0 else None
-            if move is None:
-                break
-            center = [(c - move[k, 0]).mid() for k, c in enumerate(center)]
-            if all(abs(move[k, 0]) < arb(2) ** -120 for k in (0, 1)):
-                break
-        slack = _wide_remainder(f, {**exact, **dict(zip(names, center, strict=True))})
-        for exponent in (-60, -48, -36, -24):
-            box = [c + arb(0, arb(2) ** exponent) for c in center]
-            value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slack)
-            _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slack)
-            try:
-                step = slope.solve(value)
-            except ZeroDivisionError:
-                continue
-            image = [c - step[k, 0] for k, c in enumerate(center)]
-            if all(z.contains_interior(w) for z, w in zip(box, image, strict=True)):
-                return dict(zip(names, image, strict=True))
-    raise BadInputError(f"the curves must cross near {start}, but no crossing is proved there.  Start nearer, or take "
-                        "a FloquetMatrix of higher order.")
-
-
-def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[Any, Any], slack: Any) -> Any:
-    """Values and Jacobian of two functions."""
-    rows = [part._dual(values, names, None if slack is None else [slack] * (len(part._entries) * part._columns))
-            for part in (f, g)]
-    return arb_mat([[row[0]] for row in rows]), arb_mat([row[1:] for row in rows])
-
-
-def _wide_remainder(f: Boundary, values: dict[Any, Any]) -> Any:
-    """The remainder for all complex parameters within 1, hence of derivatives, too."""
-    wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1).upper()) for s, v in values.items()}
-    period = f._F._at(values)[1]
-    bound = a_priori(harmonics(f._F._P, wide), period / 2 if f._half else period, f._F.n)
-    return max((entry.upper() for entry in bound.entries()), default=arb(0))
-
-
-def _exact(value: Any) -> Any:
-    number = exact_number(value, "a coordinate")
-    return arb(number) if isinstance(number, fmpq) else number
 
 
 def _rows(numbers: list[Any], columns: int) -> Matrix:
@@ -490,4 +333,4 @@ class Dual:
         return Dual([f * g, *(f * dg + df * g for df, dg in zip(self.parts[1:], other.parts[1:], strict=True))])
 
 
-__all__ = ["Boundary", "Root", "boundaries", "crossing"]
+__all__ = ["Boundary", "Root", "boundaries"]

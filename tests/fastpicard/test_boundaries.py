@@ -6,8 +6,7 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, cos, diff, sin
 from sympy.abc import a, b, c, h, t, v
 
-from fastpicard import BadInputError, FloquetMatrix, mathieu_a, mathieu_b
-from fastpicard.boundaries import boundaries, crossing
+from fastpicard import BadInputError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 
 MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 40)

@@ -1,0 +1,104 @@
+r"""Where two boundaries cross: solutions of both kinds coexist, and a pocket of instability closes.
+
+Newton's operator in balls, ``N(X) = c - J(X)**-1 (f, g)(c)``, J the Jacobian of two boundary functions f, g on a box X
+around c: if it maps X into its own interior, f and g have exactly one common zero in X, and it lies in ``N(X)``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flint import arb, arb_mat, ctx
+from sympy import Symbol
+
+from fastpicard.boundaries import Boundary
+from fastpicard.curves import exact_ball
+from fastpicard.errors import BadInputError
+from fastpicard.evaluate import Values, exact_values
+from fastpicard.harmonics import harmonics
+from fastpicard.remainder import a_priori
+
+
+def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, Any],
+             fixed: Values | None = None) -> dict[Symbol, Any]:
+    """Where two boundaries cross: balls in which the true curves have exactly one common point.
+
+    Where ``+1`` even and odd cross, or ``-1`` even and odd, both periodic solutions coexist: the unstable pocket
+    between them closes.
+
+    Parameters
+    ----------
+    f, g : Boundary, of one FloquetMatrix
+    x, y : Symbol
+    start : (x, y)          near the crossing
+    fixed : {Symbol: number}
+
+    Returns
+    -------
+    {x: arb, y: arb}
+
+    Raises
+    ------
+    BadInputError
+        if Newton's method does not lead to a crossing that can be proved.
+
+    Notes
+    -----
+    Newton's operator in balls, ``N = c - J(X)**-1 (f, g)(c)``: if it maps the box X into itself there is one zero in
+    it.  The remainder of the iterate is in both; that of J by Cauchy, from parameters larger by 1.
+
+    Examples
+    --------
+    >>> from sympy import Matrix, cos
+    >>> from sympy.abc import a, b, t
+    >>> from fastpicard import FloquetMatrix, boundaries
+    >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t) - cos(2*t), 0]]), t, 40)
+    >>> even, odd = boundaries(F)[2:]
+    >>> found = crossing(even, odd, a, b, (0.4, 1.4))
+    >>> float(found[a].rad()) < 1e-12
+    True
+    """
+    names = (x, y)
+    exact = exact_values({**(fixed or {}), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
+    with ctx.workprec(192):
+        center = [exact_ball(z) for z in start]
+        for _ in range(40):
+            value, slope = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, None)
+            move = slope.solve(value) if slope.det() != 0 else None
+            if move is None:
+                break
+            center = [(c - move[k, 0]).mid() for k, c in enumerate(center)]
+            if all(abs(move[k, 0]) < arb(2) ** -120 for k in (0, 1)):
+                break
+        slack = _wide_remainder(f, {**exact, **dict(zip(names, center, strict=True))})
+        for exponent in (-60, -48, -36, -24):
+            box = [c + arb(0, arb(2) ** exponent) for c in center]
+            value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slack)
+            _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slack)
+            try:
+                step = slope.solve(value)
+            except ZeroDivisionError:
+                continue
+            image = [c - step[k, 0] for k, c in enumerate(center)]
+            if all(z.contains_interior(w) for z, w in zip(box, image, strict=True)):
+                return dict(zip(names, image, strict=True))
+    raise BadInputError(f"the curves must cross near {start}, but no crossing is proved there.  Start nearer, or take "
+                        "a FloquetMatrix of higher order.")
+
+
+def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[Any, Any], slack: Any) -> Any:
+    """Values and Jacobian of two functions."""
+    rows = [part._dual(values, names, None if slack is None else [slack] * (len(part._entries) * part._columns))
+            for part in (f, g)]
+    return arb_mat([[row[0]] for row in rows]), arb_mat([row[1:] for row in rows])
+
+
+def _wide_remainder(f: Boundary, values: dict[Any, Any]) -> Any:
+    """The remainder for all complex parameters within 1, hence of derivatives, too."""
+    wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1).upper()) for s, v in values.items()}
+    period = f._F._at(values)[1]
+    bound = a_priori(harmonics(f._F._P, wide), period / 2 if f._half else period, f._F.n)
+    return max((entry.upper() for entry in bound.entries()), default=arb(0))
+
+
+__all__ = ["crossing"]
