@@ -29,7 +29,8 @@ from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
-from fastpicard.local import BITS, Rectangles, convex, span_at
+from fastpicard.local import BITS, convex, span_at
+from fastpicard.rectangles import Rectangles
 from fastpicard.vectorise import Collapsed, Evaluator
 
 Array = Any

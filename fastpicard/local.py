@@ -23,66 +23,15 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx
 
-from fastpicard.charted import Axis, Charted, Exponents, Member
+from fastpicard.charted import Charted, Exponents, Member
 from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
+from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
 
 Array = Any
 BITS = 160  # of the polynomials: what cancels in them, and float64
-
-
-class Rectangles:
-    """Rectangles in ``(u, w)``: centres and half sides as floats, the sides rounded up.
-
-    Attributes
-    ----------
-    center, half : arrays, shape (2, m)
-    """
-
-    def __init__(self, lower: Array, upper: Array) -> None:
-        np = numpy()
-        self.lower, self.upper = lower, upper
-        self.center = (lower + upper) / 2
-        self.half = np.nextafter(np.maximum(upper - self.center, self.center - lower) * (1 + 4 * UNIT), np.inf)
-
-    def __len__(self) -> int:
-        return int(self.center.shape[1])
-
-    def at(self, places: Array) -> Rectangles:
-        """Some of them."""
-        return Rectangles(self.lower[:, places], self.upper[:, places])
-
-
-def shortened(u: Array, away: Array | None = None) -> Array:
-    """Numbers of 24 bits near ``u``: then all halvings of the rectangles between them are exact.
-
-    Where ``away`` is 1 or -1 they are rounded up or down, by a few ulp of a float more than need be.
-    """
-    np = numpy()
-    mantissa, exponent = np.frexp(u)
-    scaled = np.ldexp(mantissa, 24)
-    if away is not None:
-        scaled = np.where(away > 0, np.ceil(scaled + 2.0**-20), np.where(away < 0, np.floor(scaled - 2.0**-20), scaled))
-    return np.ldexp(np.round(scaled), exponent - 24)
-
-
-def grid(axes: tuple[Axis, Axis], edges: tuple[Array, Array]) -> Rectangles:
-    """The rectangles between edges given in the parameters of the chart; at its rim they may reach a little beyond."""
-    np = numpy()
-    sides = []
-    for axis, line in zip(axes, edges, strict=True):
-        inner = np.sort(axis.inner(line))
-        away = np.zeros(len(inner))
-        away[0], away[-1] = -1, 1
-        if axis.power == 1:  # ends of 24 bits are exact
-            away[[0, -1]] = np.where(shortened(inner[[0, -1]]) == inner[[0, -1]], 0, away[[0, -1]])
-        inner = shortened(inner, away)
-        sides.append((inner[:-1], inner[1:]))
-    lower, upper = (np.stack([a.ravel() for a in np.meshgrid(sides[0][k], sides[1][k], indexing="ij")])
-                    for k in (0, 1))
-    return Rectangles(lower, upper)
 
 
 # -- ranges --------------------------------------------------------------------

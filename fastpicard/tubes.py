@@ -30,7 +30,8 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
-from fastpicard.local import LocalMap, Rectangles, amplitudes, common_bound, order_for, shift
+from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, shift
+from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
 from fastpicard.vectorise import Collapsed

@@ -9,9 +9,9 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, cos, sin, sqrt
 from sympy.abc import a, b, c, h, t, v
 
-from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, Verdict, boundaries
-from fastpicard.certify import certify
-from fastpicard.local import LocalMap, Rectangles
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, Verdict, boundaries, certify
+from fastpicard.local import LocalMap
+from fastpicard.rectangles import Rectangles
 from fastpicard.taylormodels import Models, exponents, size
 
 MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 0)
