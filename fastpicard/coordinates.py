@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from math import lcm, prod
 from typing import Any
 
 from flint import fmpq
 
-from fastpicard.modes import COS, Angle, Modes, common_unit
+from fastpicard.modes import COS, Angle, Modes, common_unit, orient
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
 FIELD = 32  # bits of one packed exponent or angle index
@@ -88,8 +89,6 @@ class Coordinates:
         return packed - (self.frequency(packed) << (FIELD * len(self.phases)))
 
 
-
-
 def _quotient(x: int, d: int) -> Any:
     return x // d if x % d == 0 else Fraction(x, d)
 
@@ -114,9 +113,28 @@ class Problem:
     rows: tuple[Row, ...]
     start: tuple[tuple[tuple[Term, ...], ...], ...]
 
-    def weight(self, packed: int) -> Any:
-        """The unit of a monomial: the product of the units of its generators."""
-        return _weight(self.coordinates, self.weights, packed)
+    def monomial(self, packed: int) -> tuple[Any, Monomial]:
+        """A packed monomial as a number times a monomial: the units of its generators are put in."""
+        found = self._monomials.get(packed)
+        if found is None:
+            factor, monomial = multiply_monomials(ONE, self.coordinates.monomial(packed))
+            found = self._monomials[packed] = factor * _weight(self.coordinates, self.weights, packed), monomial
+        return found
+
+    def angle(self, packed: int) -> tuple[bool, Angle]:
+        """A packed angle as :func:`fastpicard.modes.orient` gives it."""
+        found = self._angles.get(packed)
+        if found is None:
+            found = self._angles[packed] = orient(self.coordinates.angle(packed))
+        return found
+
+    @cached_property
+    def _monomials(self) -> dict[int, tuple[Any, Monomial]]:
+        return {}
+
+    @cached_property
+    def _angles(self) -> dict[int, tuple[bool, Angle]]:
+        return {}
 
 
 def _weight(coordinates: Coordinates, weights: tuple[Any, ...], packed: int) -> Any:

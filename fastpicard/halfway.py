@@ -86,7 +86,8 @@ def _half_turns(F: FloquetMatrix, k: int, i: int, j: int) -> Modes:
     found = F._increments
     if isinstance(found, PackedIncrements):
         problem = found.problem
-        return to_modes(problem, without_frequencies(problem, found.levels[k].columns[j][i], _unit_turns(F, problem)))
+        entry = without_frequencies(problem, found.levels[k].columns[j][i], _unit_turns(F, problem))
+        return to_modes(problem, [entry])
     modes: Modes = {}
     for (kind, (frequency, phase), monomial), f in found.entry(k, i, j).items():
         turns = multiply(multiply(algebra.as_polynomial(frequency), F._length), _PER_TURN)

@@ -16,15 +16,14 @@ nearly the same, are cleared together: sums then need no common divisors.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 from flint import fmpq_poly, fmpz
 
 from fastpicard.coordinates import Problem, Row, Term
-from fastpicard.modes import COS, SIN, Modes, mask, orient
+from fastpicard.modes import COS, SIN, Modes, mask
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
 Rows = dict[tuple[int, int], Any]  # (kind, angle) -> fmpq_poly
@@ -236,36 +235,35 @@ def _nowhere(angle: int) -> int:
     return 0
 
 
-def to_modes(p: Problem, entry: Entry) -> Modes:
-    """An entry of an increment as a series in ``t = s / unit``."""
+def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
+    """The sum of entries of increments as a series in ``t = s / unit``."""
     modes: Modes = {}
     unit, rate = p.coordinates.unit
-    stretch = fmpq_poly([0, rate])
-    exact_angle = cache(lambda packed: orient(p.coordinates.angle(packed)))
-    for packed, (scale, rows) in entry.items():
-        factor, monomial = multiply_monomials(ONE, p.coordinates.monomial(packed))
-        factor *= p.weight(packed) / scale
-        for (kind, angle), row in rows.items():
-            if rate != 1:
-                row = row(stretch)
-            if factor != 1:
-                row = row * factor
-            turned, exact = exact_angle(angle)
-            if turned:
-                row = reflected(kind, row)
-            for m, f in _by_monomial(row, monomial, unit):
-                key = (kind, exact, m)
-                old = modes.get(key)
-                modes[key] = f if old is None else old + f
-    return {key: f for key, f in modes.items() if f}
+    stretch = None if rate == 1 else fmpq_poly([0, rate])
+    for entry in entries:
+        for packed, (scale, rows) in entry.items():
+            weight, monomial = p.monomial(packed)
+            factor = None if weight == scale else weight / scale
+            for (kind, angle), row in rows.items():
+                if stretch is not None:
+                    row = row(stretch)
+                if factor is not None:
+                    row = row * factor
+                turned, exact = p.angle(angle)
+                if turned:
+                    row = reflected(kind, row)
+                for m, f in ((monomial, row),) if unit == ONE else _by_power(row, monomial, unit):
+                    key = (kind, exact, m)
+                    old = modes.setdefault(key, f)
+                    if old is not f:
+                        modes[key] = old + f
+    for key in [key for key, f in modes.items() if not f]:
+        del modes[key]
+    return modes
 
 
-def _by_monomial(row: Any, monomial: Monomial, unit: Monomial) -> list[tuple[Monomial, Any]]:
-    """``s**r = unit**r t**r``: one row, or one for each power where the unit of frequency is a symbol."""
-    if unit == ONE:
-        return [(monomial, row)]
-    terms = []
+def _by_power(row: Any, monomial: Monomial, unit: Monomial) -> Iterator[tuple[Monomial, Any]]:
+    """``s**r = unit**r t**r``: one row for each power, where the unit of frequency is a symbol."""
     for r, value in enumerate(row.coeffs()):
         gained, product = multiply_monomials(monomial, tuple((g, r * e) for g, e in unit if r))
-        terms.append((product, fmpq_poly([0] * r + [value * gained])))
-    return terms
+        yield product, fmpq_poly([0] * r + [value * gained])

@@ -147,11 +147,15 @@ class PackedIncrements:
 
     def entry(self, k: int, i: int, j: int) -> Modes:
         """Entry ``(i, j)`` of ``I_k``."""
-        return to_modes(self.problem, self.levels[k].columns[j][i])
+        return to_modes(self.problem, [self.levels[k].columns[j][i]])
+
+    def total(self, i: int, j: int) -> Modes:
+        """Entry ``(i, j)`` of the sum of all increments."""
+        return to_modes(self.problem, (level.columns[j][i] for level in self.levels))
 
     def whole_turns(self, k: int, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
-        return to_modes(self.problem, without_frequencies(self.problem, self.levels[k].columns[j][i]))
+        return to_modes(self.problem, [without_frequencies(self.problem, self.levels[k].columns[j][i])])
 
 
 @dataclass(frozen=True)
@@ -171,6 +175,13 @@ class SeriesIncrements:
     def entry(self, k: int, i: int, j: int) -> Modes:
         """Entry ``(i, j)`` of ``I_k``."""
         return self.levels[k].rows[i][j]
+
+    def total(self, i: int, j: int) -> Modes:
+        """Entry ``(i, j)`` of the sum of all increments."""
+        modes: Modes = {}
+        for level in self.levels:
+            algebra.add_modes(modes, level.rows[i][j])
+        return modes
 
     def whole_turns(self, k: int, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
@@ -247,14 +258,8 @@ class PicardIterate:
     def series(self) -> SeriesMatrix:
         """The iterate as a matrix of Poisson series."""
         rows, columns = self.shape
-        entries = tuple(tuple(self._entry(i, j) for j in range(columns)) for i in range(rows))
+        entries = tuple(tuple(self.increments.total(i, j) for j in range(columns)) for i in range(rows))
         return SeriesMatrix(entries, self.t).shifted(self._back())
-
-    def _entry(self, i: int, j: int) -> Modes:
-        result: Modes = {}
-        for k in range(self.n + 1):
-            algebra.add_modes(result, self.increments.entry(k, i, j))
-        return result
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
         return self.series[index]
