@@ -16,8 +16,9 @@ import numpy as np
 from sympy import Matrix, Rational, cos, symbols
 
 from fastpicard import FloquetMatrix, certify, chart, tubes
+from fastpicard.collapsed import Collapsed
 from fastpicard.halfway import half_period
-from fastpicard.vectorise import Collapsed, Evaluator
+from fastpicard.vectorise import Evaluator
 
 a, b, h, v, t = symbols("a b h v t")
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])

@@ -25,8 +25,9 @@ import sympy
 from sympy import Matrix, cos, symbols
 
 from fastpicard import FloquetMatrix
+from fastpicard.collapsed import Collapsed
 from fastpicard.horner import run
-from fastpicard.vectorise import Collapsed, Evaluator
+from fastpicard.vectorise import Evaluator
 
 a, b, t = symbols("a b t")
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])

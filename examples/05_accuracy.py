@@ -18,7 +18,8 @@ import numpy as np
 from sympy import Add, Matrix, Rational, cos, lambdify, pi, symbols
 
 from fastpicard import FloquetMatrix, FundamentalMatrix, PoissonSeries
-from fastpicard.vectorise import Collapsed, Evaluator, values_of
+from fastpicard.collapsed import Collapsed
+from fastpicard.vectorise import Evaluator, values_of
 
 a, b, t = symbols("a b t")
 P = Matrix([[0, 1], [-a - b * cos(t), 0]])

@@ -23,6 +23,7 @@ from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
+from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.errors import BadInputError, BadTypeError
@@ -34,7 +35,6 @@ from fastpicard.modes import Modes
 from fastpicard.remainder import a_posteriori
 from fastpicard.ring import expression_of
 from fastpicard.series import PoissonSeries
-from fastpicard.vectorise import Collapsed
 
 Matrix = list[list[Any]]
 

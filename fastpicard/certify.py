@@ -23,6 +23,7 @@ from sympy import Symbol
 
 from fastpicard import plotting
 from fastpicard.charted import Axis, Charted, read_chart
+from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, exact_number, numpy, upper_float
@@ -33,7 +34,6 @@ from fastpicard.rectangles import Rectangles, bisected, cells, corners, flattene
 from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
 from fastpicard.taylormodels import Models, stacked
-from fastpicard.vectorise import Collapsed
 
 Array = Any
 REMAINDER = 1e-13  # of every entry, on all rectangles that are not decided by convexity

@@ -25,13 +25,14 @@ from sympy import Symbol
 
 from fastpicard import sweeps
 from fastpicard.charted import Charted, Member, read_chart
+from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.local import BITS, convex, span_at
 from fastpicard.rectangles import Rectangles
-from fastpicard.vectorise import Collapsed, Evaluator
+from fastpicard.vectorise import Evaluator
 
 Array = Any
 

@@ -22,12 +22,12 @@ import sympy
 from flint import arb, ctx, fmpz_poly
 from sympy import CRootOf, Dummy, Expr, Symbol
 
+from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.evaluate import Values, exact_number, expression_ball, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.reading import as_expression
 from fastpicard.ring import Monomial, expression_of
-from fastpicard.vectorise import Collapsed
 
 Array = Any
 Exponents = tuple[int, int]

@@ -20,6 +20,7 @@ from mpmath.libmp import dps_to_prec
 from sympy import Expr, ImmutableMatrix, Symbol, pi
 
 from fastpicard import modes as algebra
+from fastpicard.collapsed import Collapsed
 from fastpicard.enclosure import over_period
 from fastpicard.errors import BadInputError, BadTypeError, NotPeriodicError
 from fastpicard.evaluate import Point, Values, ball, check_digits, exact_number, to_complex, upper_float
@@ -32,7 +33,7 @@ from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
 from fastpicard.ring import ONE, Polynomial, generator, multiply, normal, symbols_of, to_expression
 from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_forms
 from fastpicard.stability import Verdict, judge
-from fastpicard.vectorise import Collapsed, vectorise
+from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
 
 _BOUND_BITS = 8192  # the precision of P and T where a bound is asked for

@@ -26,6 +26,7 @@ from flint import fmpq
 from sympy import Expr, ImmutableMatrix, Matrix, Symbol
 
 from fastpicard import modes as algebra
+from fastpicard.collapsed import Collapsed
 from fastpicard.coordinates import Problem, problem
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values
@@ -35,7 +36,7 @@ from fastpicard.modes import Modes
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, read_constant
 from fastpicard.ring import ONE, Polynomial
 from fastpicard.series import PoissonSeries
-from fastpicard.vectorise import Collapsed, vectorise
+from fastpicard.vectorise import vectorise
 
 # Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
 SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)

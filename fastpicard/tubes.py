@@ -25,6 +25,7 @@ from mpmath.libmp import dps_to_prec
 from sympy import Matrix, Symbol
 
 from fastpicard.charted import Charted, Exponents, read_chart
+from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import criterion
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
@@ -34,7 +35,6 @@ from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, shif
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
-from fastpicard.vectorise import Collapsed
 
 Array = Any
 TERMS = 30  # of the Taylor polynomials

@@ -10,7 +10,8 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Mul, Rational, cos, exp, pi, sin, sqrt
 
 from fastpicard import FloquetMatrix, FundamentalMatrix, MissingParameterError, PoissonSeries, fast_picard
-from fastpicard.vectorise import BALL, BLOCK, FLOAT, PAIR, Collapsed, Evaluator, vectorise
+from fastpicard.collapsed import Collapsed
+from fastpicard.vectorise import BALL, BLOCK, FLOAT, PAIR, Evaluator, vectorise
 from tests.strategies import a, b, c, phi, t, w
 
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])
