@@ -14,7 +14,6 @@ from functools import cached_property
 from math import gcd
 from typing import Any
 
-import sympy
 from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, ImmutableMatrix, Symbol, pi
@@ -22,15 +21,17 @@ from sympy import Expr, ImmutableMatrix, Symbol, pi
 from fastpicard import modes as algebra
 from fastpicard.collapsed import Collapsed
 from fastpicard.enclosure import over_period
-from fastpicard.errors import BadInputError, BadTypeError, NotPeriodicError
+from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Point, Values, ball, check_digits, exact_number, to_complex, upper_float
 from fastpicard.harmonics import Harmonics, harmonics, is_box, numbers_in
+from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, read_matrix
 from fastpicard.modes import Modes
-from fastpicard.picard import Increments, check_order, first_increments, identity_columns
-from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, read_constant
+from fastpicard.period import check_period, turns_of
+from fastpicard.picard import check_order
+from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
-from fastpicard.ring import ONE, Polynomial, generator, multiply, normal, symbols_of, to_expression
+from fastpicard.ring import ONE, Polynomial, multiply, symbols_of
 from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_forms
 from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import vectorise
@@ -296,7 +297,7 @@ class FloquetMatrix:
     def _turns(self) -> int:
         """How many whole periods of ``P`` there are in ``T``."""
         frequencies = {angle[0] for row in self._P.rows for modes in row for _, angle, _ in modes if angle[0]}
-        return max(1, gcd(*(int(_turns(q, self._length)[ONE].p) for q in frequencies)))
+        return max(1, gcd(*(int(turns_of(q, self._length)[ONE].p) for q in frequencies)))
 
     def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, list[Any]]:
         """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic forms."""
@@ -428,50 +429,3 @@ class FloquetMatrix:
         if self._n > 8:
             return f"$\\displaystyle \\text{{{repr(self).strip('<>')}}}$"
         return latex_or_summary(self, sum(len(modes) for modes in self._all()))
-
-
-# -- the period --------------------------------------------------------------
-
-
-def check_period(matrix: SeriesMatrix, period: Any) -> Polynomial:
-    """The period as a polynomial in its symbols, if every entry of the matrix repeats with it."""
-    expression = as_finite(period, "the period")
-    if expression.has(sympy.Float):
-        raise BadInputError(f"the period must be exact, but {expression} is a float: its cosines are not exactly 1.  "
-                            "Use an exact period such as 2*pi.")
-    if expression.is_positive is False:
-        raise BadInputError(f"the period must be positive, but it is {expression}.  Use 2*pi, say.")
-    length = as_polynomial(read_constant(expression, matrix.t, "the period"), "the period")
-    for i, row in enumerate(matrix.rows):
-        for j, modes in enumerate(row):
-            for (kind, angle, monomial), f in modes.items():
-                _check_mode(matrix, (i, j), {(kind, angle, monomial): f}, length, expression)
-    return length
-
-
-def _check_mode(matrix: SeriesMatrix, place: tuple[int, int], mode: Modes, length: Polynomial, period: Expr) -> None:
-    (((_, angle, _), f),) = mode.items()
-    turns = _turns(angle[0], length)
-    if f.degree() == 0 and (not turns or list(turns) == [ONE] and turns[ONE].q == 1):
-        return
-    i, j = place
-    if f.degree() > 0:
-        evidence, remedy = "which is not periodic but grows with the time", "Only trigonometric polynomials repeat."
-    else:
-        evidence = f"which makes {to_expression(turns)} of a turn in that time"
-        remedy = _remedy(matrix)
-    raise NotPeriodicError(f"P does not repeat with period {period}: entry P[{i}, {j}] contains "
-                           f"{write(mode, matrix.t)}, {evidence}.  {remedy}")
-
-
-def _turns(frequency: algebra.Linear, length: Polynomial) -> Polynomial:
-    """``q T / (2 pi)``."""
-    return normal(multiply(multiply(algebra.as_polynomial(frequency), length), {((generator(pi), -1),): fmpq(1, 2)}))
-
-
-def _remedy(matrix: SeriesMatrix) -> str:
-    frequencies = {angle[0] for row in matrix.rows for modes in row for _, angle, _ in modes if angle[0]}
-    unit = algebra.common_unit(frequencies)
-    if unit is None:
-        return "The frequencies have no common period."
-    return f"All entries repeat together after period={2 * pi / to_expression({unit[0]: unit[1]})}."

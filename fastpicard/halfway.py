@@ -36,9 +36,9 @@ from fastpicard.evaluate import free_symbols
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import harmonics
 from fastpicard.increments import to_modes, without_frequencies
+from fastpicard.iteration import PackedIncrements
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Modes, orient
-from fastpicard.picard import PackedIncrements
 from fastpicard.ring import ONE, Polynomial, generator, multiply
 from fastpicard.spectrum import symplectic_forms
 

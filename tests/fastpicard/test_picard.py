@@ -10,8 +10,8 @@ from hypothesis import given, strategies as st
 from sympy import Matrix, Rational, S, Symbol, cos, pi, sin, sqrt
 
 from fastpicard import FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard
+from fastpicard.iteration import SeriesIncrements, first_increments, identity_columns
 from fastpicard.matrix import read_matrix
-from fastpicard.picard import SeriesIncrements, first_increments, identity_columns
 from tests.oracles import (
     distance,
     plain_expression,
