@@ -8,7 +8,7 @@ errors do not compound as if they were always at their worst.  Orders and steps 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, exp, log
+from math import ceil, exp, inf, log
 from typing import Any
 
 import flint
@@ -23,7 +23,7 @@ from .machine import rebound
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
-__all__ = ["best_order", "integrate_digits"]
+__all__ = ["Steps", "best_order", "integrate_digits"]
 
 GUARD = 30  # bits beyond those asked for
 
@@ -43,25 +43,27 @@ def best_order(digits: float) -> int:
 
 
 def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None = None,
-                     progress: Callable[[float], None] | None = None) -> tuple[Any, Any, int]:
+                     progress: Callable[[float], None] | None = None, steps: Callable[..., Steps] | None = None
+                     ) -> tuple[Any, Any, int]:
     """Angles and rates at ``times``, shape (times, n), as mpmath numbers of ``digits`` digits, and the number of steps.
 
-    ``theta``, ``omega`` and ``times`` are exact SymPy numbers.  Truncation and rounding are below ``10**-digits`` a
-    step.  Raises DriveError where the support's motion has no Taylor series, QuantityError where a step shrinks to
-    nothing.
+    ``theta``, ``omega`` and ``times`` are exact SymPy numbers; ``steps`` makes the :class:`Steps`.  Truncation and
+    rounding are below ``10**-digits`` a step.  Raises DriveError where the support's motion has no Taylor series,
+    QuantityError where a step shrinks to nothing.
     """
     bits = int(digits * 3.3220) + GUARD
     context = mpmath.mp.clone()
     context.dps = digits
     with flint.ctx.workprec(bits):
-        steps = _Steps(chain, [[Balls().number(x).mid() for x in part] for part in (theta, omega)], digits, order)
+        state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
+        motion = (steps or Steps)(chain, state, digits, order)
         marks = [Balls().number(x).mid() for x in times]
         found = []
         for mark in marks:
-            found.append(steps.state_at(mark, marks[-1]))
+            found.append(motion.state_at(mark, marks[-1]))
             if progress is not None:
                 progress(float(mark))
-        return *(_numbers([state[part] for state in found], context) for part in (0, 1)), steps.count
+        return *(_numbers([state[part] for state in found], context) for part in (0, 1)), motion.count
 
 
 def _numbers(rows: list[Any], context: Any) -> Any:
@@ -74,8 +76,8 @@ def _numbers(rows: list[Any], context: Any) -> Any:
     return out
 
 
-class _Steps:
-    """The state of an integration: where the last expansion was made, and the expansion."""
+class Steps:
+    """An integration: the state at the last expansion in balls, and the expansion, here in balls too."""
 
     def __init__(self, chain: CompiledChain, state: list[Any], digits: int, order: int | None) -> None:
         self.chain, self.arithmetic, self.count = chain, Balls(), 0
@@ -85,6 +87,9 @@ class _Steps:
         self.joints = chain.joints_in(self.arithmetic)
         self.theta, self.omega = (self.arithmetic.array(part) for part in state)
         self.gravity = self.arithmetic.number(chain.gravity)
+        self.middle = np.frompyfunc(self.arithmetic.midpoint, 1, 1)
+        self.pull: Any = None
+        self.series: Any = None
         self.start: Any = None
         self.length: Any = None
 
@@ -95,35 +100,56 @@ class _Steps:
             self._expand(end)
             return self.theta, self.omega
         while abs(t - self.start) > abs(self.length):
-            self.theta, self.omega = self._increments(self.length)
+            self.theta, self.omega = self._moved(self.length)
             self.start = (self.start + self.length).mid()
             self._expand(end)
-        return self._increments(t - self.start)
+        return self._moved(t - self.start)
+
+    def pulled(self) -> tuple[Any, Any]:
+        """The series of the acceleration of the first joint, gravity included."""
+        ax, ay = self.chain.support.series(self.start, self.order, self.arithmetic)
+        ay[0] = ay[0] + self.gravity
+        return ax, [self.chain.up * a for a in ay]
+
+    def expanded(self, s: Any, c: Any, delta: Any) -> Any:
+        """The series of every rod."""
+        n, order, one = len(self.chain), self.order, self.arithmetic.number(Integer(1))
+        factors, held = self.arithmetic.zeros(n, FACTORS), self.arithmetic.zeros(n, 6)
+        series = self.arithmetic.zeros(*series_shape(n, order))
+        factor(self.rods, s, c, one, factors)
+        _expand(factors, *self.joints, delta, self.omega, *self.pull, order, one, held, series)
+        return series
+
+    def magnitudes(self) -> list[float]:
+        """Logarithms of the largest coefficient of any rate, for the last four orders, the last first."""
+        sizes = [max(abs(x.mid()) for x in self.series[:, 2, i]) for i in range(min(4, self.order))]
+        return [float(size.log()) if size != 0 else -inf for size in sizes]
+
+    def increments(self, h: Any) -> tuple[Any, Any]:
+        """How far angles and rates move in the time ``h``."""
+        order, w = self.order, self.series[:, 2]
+        rate, angle = w[:, 0], w[:, 0] / (order + 1)
+        for m in range(1, order):
+            angle = angle * h + w[:, m] / (order + 1 - m)
+            rate = rate * h + w[:, m]
+        return (angle * h + w[:, order]) * h, rate * h
 
     def _expand(self, end: Any) -> None:
-        n, order, one = len(self.chain), self.order, self.arithmetic.number(Integer(1))
+        n = len(self.chain)
         s, c = np.empty(n, dtype=object), np.empty(n, dtype=object)
         delta = self.theta.copy()
         delta[1:] = delta[1:] - self.theta[:-1]
         for k in range(n):
             s[k], c[k] = self.arithmetic.sines(delta[k])
-        factors, held = self.arithmetic.zeros(n, FACTORS), self.arithmetic.zeros(n, 6)
-        self.series = self.arithmetic.zeros(*series_shape(n, order))
-        factor(self.rods, s, c, one, factors)
-        ax, ay = self.chain.support.series(self.start, order, self.arithmetic)
-        ay[0] = ay[0] + self.gravity
-        up = self.chain.up
-        _expand(factors, *self.joints, delta, self.omega, ax, [up * a for a in ay], order, one, held, self.series)
+        if self.pull is None or not self.chain.support.steady:
+            self.pull = self.pulled()
+        self.series = self.expanded(s, c, delta)
         self.length = self._length(end)
         self.count += 1
 
     def _length(self, end: Any) -> Any:
         remaining = float(end - self.start)
-        logs = []
-        for m in range(max(1, self.order - 3), self.order + 1):
-            largest = max(abs(float(x)) for x in self.series[:, 2, self.order - m])
-            if largest > 0:
-                logs.append(-log(largest) / (m + 1))
+        logs = [-size / (self.order + 1 - i) for i, size in enumerate(self.magnitudes()) if size > -inf]
         h = exp(min(logs) + log(self.tolerance) / (self.order + 1)) if logs else 2 * abs(remaining) + 1
         h = min(h, 2 * abs(remaining) + 1e-300, FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega), 1e-300))
         if not h > 1e-30 * abs(float(self.start)) or h != h:
@@ -131,12 +157,6 @@ class _Steps:
                                 f"{h}.")
         return flint.arb(h if remaining >= 0 else -h)
 
-    def _increments(self, h: Any) -> tuple[Any, Any]:
-        order, w = self.order, self.series[:, 2]
-        rate, angle = w[:, 0], w[:, 0] / (order + 1)
-        for m in range(1, order):
-            angle = angle * h + w[:, m] / (order + 1 - m)
-            rate = rate * h + w[:, m]
-        theta, omega = self.theta + (angle * h + w[:, order]) * h, self.omega + rate * h
-        middle = np.frompyfunc(self.arithmetic.midpoint, 1, 1)
-        return middle(theta), middle(omega)
+    def _moved(self, h: Any) -> tuple[Any, Any]:
+        angle, rate = self.increments(h)
+        return self.middle(self.theta + angle), self.middle(self.omega + rate)

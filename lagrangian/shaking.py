@@ -79,11 +79,12 @@ class Shaking:
     def series(self, t: Any, order: int, arithmetic: Arithmetic | None = None) -> tuple[list[Any], list[Any]]:
         """Taylor coefficients 0, ..., order about ``t`` of both components.  Raises DriveError where there are none."""
         number = arithmetic.number if arithmetic else _float
+        if self.function is None:
+            return self._waves(t, order, number, arithmetic.sines if arithmetic else lambda x: (np.sin(x), np.cos(x)))
         zero, one = number(Integer(0)), number(Integer(1))
         time = Jet([t, one, *[zero] * (order - 1)][: order + 1], FUNCTIONS)
         try:
-            pair = self.function(time, number) if self.function is not None else self._waves(time, number)
-            parts = [part if isinstance(part, Jet) else time * zero + part for part in pair]
+            parts = [part if isinstance(part, Jet) else time * zero + part for part in self.function(time, number)]
         except (TypeError, AttributeError, ValueError) as refusal:
             raise DriveError(
                 f"the Taylor stepper calls support_acceleration with a power series in place of t, and it answers "
@@ -91,14 +92,16 @@ class Shaking:
                 f"or choose another method, such as method='DOP853'.") from refusal
         return parts[0].coefficients, parts[1].coefficients
 
-    def _waves(self, time: Any, number: Any) -> tuple[Any, Any]:
-        parts = [time * number(Integer(0)) + number(x) for x in self.constant]
+    def _waves(self, t: Any, order: int, number: Any, sines: Any) -> tuple[list[Any], list[Any]]:
+        x, y = ([number(part)] + [number(Integer(0))] * order for part in self.constant)
         for wave in self.waves:
-            q, *amplitudes = (number(x) for x in wave)
-            c, s = (time * q).cos(), (time * q).sin()
-            parts[0] += c * amplitudes[0] + s * amplitudes[1]
-            parts[1] += c * amplitudes[2] + s * amplitudes[3]
-        return parts[0], parts[1]
+            q, cx, sx, cy, sy = (number(part) for part in wave)
+            s, c = sines(q * t)
+            for j in range(order + 1):
+                x[j] += cx * c + sx * s
+                y[j] += cy * c + sy * s
+                s, c = c * q / (j + 1), -s * q / (j + 1)
+        return x, y
 
 
 def _float(exact: Any) -> float:

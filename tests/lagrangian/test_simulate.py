@@ -323,6 +323,17 @@ def test_finer_accuracy_than_float64_takes_more_digits():
     assert "digits" in repr(motion) and motion.energy_drift < 1e-14
 
 
+def test_rates_whose_series_leave_the_range_of_floats():
+    """At 1e8 rad/s the 52nd Taylor coefficient is beyond 1e400; without gravity the angle is omega t."""
+    chain = CompiledChain([1], [1], [1], [1], 0)
+    motion = simulate(chain, [Rational(1, 2)], [10**8], [0, Rational(1, 10**8)], digits=45)
+    shaken = CompiledChain([1], [1], [1], [1], 9)
+    fast = simulate(shaken, [Rational(1, 2)], [10**8], [0, Rational(1, 10**8)], digits=45)
+
+    assert abs(motion.theta[-1, 0] - mpmath.mpf("1.5")) < mpmath.mpf(10) ** -40
+    assert 1e-17 < abs(fast.theta[-1, 0] - mpmath.mpf("1.5")) < 1e-15
+
+
 def test_a_support_that_follows_any_smooth_function_of_time():
     """A function of numpy's functions has a Taylor series; one of math's has not, and SciPy still takes it."""
     ones = [1.0]
