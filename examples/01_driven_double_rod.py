@@ -87,7 +87,7 @@ def report(F: FloquetMatrix, points: list[tuple[float, float]], modes: object) -
     moduli = [abs(F.multipliers(place)[0]) for place in places]
     proved = ", ".join(f"({float(place[h])}, {float(place[v])}): {F.verdict(place).name}" for place in places)
     print(f"{'largest':12}{'(0.02, 80.1): {:.6g}, (0.02, 90.1): {:.6g}'.format(*moduli):44}Out[48]: 1.01665, 1.")
-    print(f"{'proved':12}{proved:44}of the true equation, in balls")
+    print(f"{'proved':12}{proved:54} of the true equation, in balls")
     slow = min(modes.mu, key=lambda mu: mu.evalf())
     found = next(y for x, y in points if x == 0.06 and y < 40)
     exact = (-slow / (mathieu_a(0, -2 * slow * Rational(6, 100), 20) / 4)) ** Rational(1, 2)
