@@ -27,7 +27,7 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Values, check_digits, exact_values, to_number, upper_float
+from fastpicard.evaluate import Values, check_digits, exact_values, refine, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.harmonics import harmonics
@@ -172,16 +172,15 @@ class Boundary:
         return self._combine(rows).as_expr()
 
     def __call__(self, values: Values, digits: int | None = None) -> Any:
-        """The n-th iterate's value: float, or mpf with ``digits`` digits of the largest intermediate value."""
-        wanted = check_digits(digits)
-        with ctx.workprec(64 + dps_to_prec(wanted or 17)):
-            return to_number(self._dual(exact_values(values, self.symbols, self._F.t), ())[0], wanted)
+        """The n-th iterate's value: float, or mpf with ``digits`` digits, all of them right."""
+        exact, wanted = exact_values(values, self.symbols, self._F.t), check_digits(digits)
+        return to_number(refine(lambda: self._dual(exact, ()), wanted)[0], wanted)
 
     def gradient(self, values: Values) -> dict[Symbol, float]:
         """The derivatives by all parameters."""
-        with ctx.workprec(128):
-            dual = self._dual(exact_values(values, self.symbols, self._F.t), self.symbols)
-            return {s: to_number(x, None) for s, x in zip(self.symbols, dual[1:], strict=True)}
+        exact = exact_values(values, self.symbols, self._F.t)
+        slopes = refine(lambda: self._dual(exact, self.symbols)[1:], None)
+        return {s: to_number(x, None) for s, x in zip(self.symbols, slopes, strict=True)}
 
     def _of(self, symbol: Symbol | None) -> Collapsed:
         if symbol not in self._collapsed:

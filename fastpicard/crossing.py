@@ -12,7 +12,7 @@ from flint import arb, arb_mat, ctx
 from sympy import Symbol
 
 from fastpicard.boundaries import Boundary
-from fastpicard.curves import exact_ball
+from fastpicard.curves import exact_ball, resolved
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, exact_values
 from fastpicard.harmonics import harmonics
@@ -62,6 +62,9 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     exact = exact_values({**(fixed or {}), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
     with ctx.workprec(192):
         center = [exact_ball(z) for z in start]
+        for part in (f, g):  # as many bits as cancel in them
+            resolved(lambda *at, part=part: part._dual({**exact, **dict(zip(names, at, strict=True))}, names), center,
+                     [1, 1], arb(2) ** -120)
         for _ in range(40):
             value, slope = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, None)
             move = slope.solve(value) if slope.det() != 0 else None

@@ -6,11 +6,14 @@ is replaced by halving, so what is found lies between the ends.
 **A curve** ``f(x, y) = 0`` by steps along the tangent ``(-f_y, f_x)`` and back onto it by Newton's method along the
 gradient, ``-f (f_x, f_y)/|grad f|**2``.  The sides of the rectangle are the units.  A step is halved where the tangent
 turns by more than ``arccos 0.98`` or the curve is not met near the step's end, and grows again where it is straight.
+
+**Precision.**  Balls say what has cancelled.  The working precision grows until the radius of f, divided by its slope,
+is a shift of the zero that does not matter (:func:`resolved`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import hypot
 from typing import Any
@@ -21,6 +24,7 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import exact_number, numpy, to_number
 
 MOST = 60  # evaluations of one zero
+MOST_BITS = 1 << 14  # of the working precision
 Array = Any
 Pair = tuple[float, float]
 Function = Callable[..., list[Any]]  # of as many balls as there are variables: the value and the derivatives by them
@@ -33,8 +37,24 @@ def exact_ball(value: Any) -> Any:
     return arb(number) if isinstance(number, fmpq) else number
 
 
+def resolved(function: Function, place: Sequence[Any], scales: Sequence[Any], tol: Any) -> list[Any]:
+    """The function and its derivatives, sharp enough to place a zero to ``tol`` of the scales of the variables.
+
+    Raises the working precision, and leaves it there, until the radius of the value is at most ``tol`` times the sum
+    of ``|slope| scale``.
+    """
+    while True:
+        value, *slopes = function(*place)
+        steep = sum((abs(d.mid()) * s for d, s in zip(slopes, scales, strict=True)), arb(0))
+        if value.rad() <= tol * steep or 2 * ctx.prec > MOST_BITS:
+            return [value, *slopes]
+        ctx.prec *= 2
+
+
 def zero(function: Function, ends: tuple[Any, Any], tol: Any) -> tuple[Any, int]:
     """An exact number near a zero of a function of one variable, and how often the function was evaluated.
+
+    To ``tol`` of itself.  The working precision is raised where need be, and left there.
 
     Raises
     ------
@@ -42,7 +62,8 @@ def zero(function: Function, ends: tuple[Any, Any], tol: Any) -> tuple[Any, int]
         if the signs at both ends are not proved to differ.
     """
     lo, hi = sorted(map(exact_ball, ends), key=float)
-    (f, df), (g, dg) = function(lo), function(hi)
+    reach = [abs(lo) + abs(hi) + tol]
+    (f, df), (g, dg) = (resolved(function, [end], reach, tol / 16) for end in (lo, hi))
     if not f * g <= 0:
         raise BadInputError(f"the function must change its sign between the ends {float(lo)} and {float(hi)}, but "
                             f"it is {f.str(5)} and {g.str(5)} there.  Choose ends on both sides of the boundary.")
@@ -54,7 +75,7 @@ def zero(function: Function, ends: tuple[Any, Any], tol: Any) -> tuple[Any, int]
         if not (new > lo and new < hi):
             new = ((lo + hi) / 2).mid()
         moved = abs(new - here)
-        value, slope = function(new)
+        value, slope = resolved(function, [new], reach, tol / 16)
         count, here = count + 1, new
         if value == 0 or value.contains(0) or abs(value / slope) < tol * (abs(here) + tol) and moved < 1:
             break
@@ -73,10 +94,11 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
         tangents ``(dx, dy)`` in units of the sides, of length 1, all in the direction of travel.
     """
     np = numpy()
-    first = _onto(function, box, [(c - lo) / w for c, (lo, w) in zip(start, box, strict=True)])
-    if first is None:
-        return None
-    halves = [_one_way(function, box, first, sign, step) for sign in (-1.0, 1.0)]
+    with ctx.workprec(128):
+        first = _onto(function, box, [(c - lo) / w for c, (lo, w) in zip(start, box, strict=True)])
+        if first is None:
+            return None
+        halves = [_one_way(function, box, first, sign, step) for sign in (-1.0, 1.0)]
     track = [*reversed(halves[0]), first, *halves[1]]
     scale, origin = np.array([w for _, w in box]), np.array([lo for lo, _ in box])
     points = np.array([point for point, _ in track]) * scale + origin
@@ -115,9 +137,8 @@ def _one_way(function: Function, box: Box, first: tuple[Pair, Pair], sign: float
 def _onto(function: Function, box: Box, at: list[float]) -> tuple[Pair, Pair] | None:
     """The point of the curve that Newton's method along the gradient finds, and the tangent there."""
     for _ in range(12):
-        with ctx.workprec(128):
-            place = [exact_ball(lo + c * w) for c, (lo, w) in zip(at, box, strict=True)]
-            f, *slope = (to_number(part, None) for part in function(*place))
+        place = [exact_ball(lo + c * w) for c, (lo, w) in zip(at, box, strict=True)]
+        f, *slope = (to_number(part, None) for part in resolved(function, place, [w for _, w in box], 1e-14))
         slope = [d * w for d, (_, w) in zip(slope, box, strict=True)]
         size = hypot(*slope)
         if size == 0:
@@ -133,4 +154,4 @@ def _distance(p: Pair, q: Pair) -> float:
     return hypot(p[0] - q[0], p[1] - q[1])
 
 
-__all__ = ["curve", "exact_ball", "zero"]
+__all__ = ["curve", "exact_ball", "resolved", "zero"]
