@@ -7,10 +7,10 @@ by its defect.  With ``R = h P F - F'`` the error ``E = Phi - F`` obeys ``E' = h
     |E(u)|  <=  exp(h Pbar) * sup over [0, 1] of |R|,      Pbar = sup |P|.
 
 ``F`` is the Taylor polynomial, computed in integers (units of ``2**-bits``) from
-``(k + 1) F_{k+1} = sum_m P_m F_{k-m}``; its defect is an exact product of integer
-polynomials plus what the Taylor polynomial of ``P`` leaves out, which is bounded.  So
-no rounding has to be followed, and every number type of the parameters is one case: a
-ball's radius only widens ``P``.
+``k F_k = sum_m P_m F_{k-1-m}``.  The defect is what rounding down leaves of these
+equations, less than ``k`` units each, what they leave out beyond the last ``F_k``, and
+what the Taylor polynomial of ``P`` leaves out.  So no rounding has to be followed, and
+every number type of the parameters is one case: a ball's radius only widens ``P``.
 
 Over a period the symmetries of ``P`` are used: a shorter period ``T/k`` (then
 ``Phi(T) = Phi(T/k)**k``), and reversal, ``s P(-t) s = -P(t)`` with signs ``s``
@@ -20,18 +20,19 @@ Over a period the symmetries of ``P`` are used: a shorter period ``T/k`` (then
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Sequence
+from itertools import accumulate, chain, cycle, repeat, zip_longest
 from operator import mul
 from typing import Any
 
-from flint import arb, arb_mat, ctx, fmpz, fmpz_poly
+from flint import arb, arb_mat, ctx, fmpz
 from mpmath.libmp import dps_to_prec
 
 from fastpicard.errors import BadInputError
 from fastpicard.harmonics import Harmonics
 
 MOST_PIECES, MOST_ORDERS = 1 << 20, 1 << 14
-Rows = list[list[Any]]
 
 
 def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: int, is_box: bool = False,
@@ -126,7 +127,7 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     scales = _balance(P)
     speed, turn = _speed(P, scales) * _upper(abs(length)), P.highest * _upper(abs(length))
     # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones.
-    pieces = max(1, math.ceil(speed / 0.25) if P.is_wide else math.ceil(max(speed / (5 + ctx.prec / 50), turn / 3.2)))
+    pieces = max(1, math.ceil(speed / 0.25) if P.is_wide else math.ceil(max(speed / (9 + ctx.prec / 50), turn / 3.2)))
     if pieces > MOST_PIECES:
         raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} takes more than {MOST_PIECES} steps: the "
                             f"coefficients reach {_upper(P.bound.det()):.3g}.  Take a smaller period.")
@@ -134,8 +135,7 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     result = None
     for k in range(pieces):
         if result is None or not P.is_constant:
-            guard = int(1.5 * speed / pieces) + pieces.bit_length() + 8  # what exp(h Pbar) costs
-            once = _step(P.shifted(start + step * k), step, scales, ctx.prec + guard)
+            once = _step(P.shifted(start + step * k), step, scales, ctx.prec + pieces.bit_length() + 4)
         result = once if result is None else once * result
     return result
 
@@ -167,56 +167,60 @@ def _balance(P: Harmonics) -> list[int]:
 
 
 # -- one step ----------------------------------------------------------------
+#
+# Entries of P and F are split into their even and odd powers of u: where P is even or odd, half of them vanish.
+
+Parts = tuple[Sequence[Any], Sequence[Any]]  # coefficients of even and of odd powers, integers
+Taylor = dict[tuple[int, int], tuple[Parts, Any]]  # the entries of h P, with a bound of what they leave out, in units
 
 
 def _step(P: Harmonics, h: Any, scales: list[int], bits: int) -> Any:
     """``Phi(h, 0)`` by one Taylor polynomial and its defect."""
-    size = P.size
+    size, unit = P.size, arb(2) ** -bits
     taylor = {(i, j): _taylor(waves, h * arb(2) ** (scales[j] - scales[i]), h, bits)
               for (i, j), waves in P.waves.items()}
-    rows = [[(j, taylor[i, j][0]) for j in range(size) if (i, j) in taylor] for i in range(size)]
-    columns = _solve(rows, bits)
-    defect = _defect(rows, columns, {place: slack for place, (_, slack) in taylor.items()}, bits)
+    columns = [_column(taylor, size, j, bits) for j in range(size)]
+    defect = arb_mat([[_defect(taylor, column, i, unit) for column in columns] for i in range(size)])
     growth = arb_mat([[P.bound[i, j] * abs(h) * arb(2) ** (scales[j] - scales[i]) for j in range(size)]
                       for i in range(size)]).exp()
     error = growth * defect
-    return arb_mat([[(arb(sum(columns[j][i])) * arb(2) ** -bits + arb(0, error[i, j].upper()))
+    return arb_mat([[arb(sum(map(sum, columns[j][i])), error[i, j].upper()) * unit
                      * arb(2) ** (scales[i] - scales[j]) for j in range(size)] for i in range(size)])
 
 
-def _taylor(waves: list[Any], scale: Any, h: Any, bits: int) -> tuple[list[Any], Any]:
-    """The Taylor coefficients of ``scale * entry(h u)`` in units of ``2**-bits``, and what they leave out on [0, 1]."""
-    balls: list[Any] = [arb(0)]
+def _taylor(waves: list[Any], scale: Any, h: Any, bits: int) -> tuple[Parts, Any]:
+    """The Taylor coefficients of ``scale * entry(h u)``, and what they leave out on [0, 1]."""
+    parts: tuple[list[Any], list[Any]] = [], []
     slack = arb(0)
-    small = arb(2) ** -bits
-    for q, c, s in waves:
-        even, odd = c * scale, s * scale
-        if q == 0:
-            balls[0] += even
-            continue
-        size, turn = abs(even) + abs(odd), q * h
-        power, k = arb(1), 0
-        while k == 0 or not size * abs(power) < small:
-            if k == len(balls):
-                balls.append(arb(0))
-            balls[k] += power * (odd if k % 2 else even)
-            k += 1
-            power = (power if k % 2 else -power) * turn / k
-        slack += size * abs(power) * abs(turn).exp()  # the rest of both series, term by term below those of exp
-    unit = arb(2) ** bits
-    numbers = []
-    for x in balls:
-        scaled = x * unit
-        nearest = _integer(scaled)
-        slack += abs(scaled - nearest) / unit
-        numbers.append(_number(nearest, bits))
-    return numbers, slack.upper()
+    for q, *amplitudes in waves:
+        powers, lost, growth = _powers(q * h, bits)
+        for parity, (part, amplitude) in enumerate(zip(parts, amplitudes, strict=True)):
+            if not (scaled := amplitude * scale).is_zero():
+                c, error = _in_units(scaled, bits)
+                terms = [x * p >> bits for x, p in zip(cycle((c, -c)), powers[parity::2], strict=False)]
+                part[:] = [x + y for x, y in zip_longest(part, terms, fillvalue=0)]
+                slack += abs(arb(c)) * lost + error * growth + len(terms)
+    return parts, slack.upper()
 
 
-def _integer(x: Any) -> int:
-    """An integer near the midpoint of a ball."""
-    mantissa, exponent = x.mid().man_exp()
-    return int(mantissa) << int(exponent) if exponent >= 0 else int(mantissa) >> -int(exponent)
+def _powers(x: Any, bits: int) -> tuple[list[Any], Any, Any]:
+    """``x**k / k!`` until nothing is left, a bound of all errors together (a number, not in units), and ``exp |x|``."""
+    unit = arb(2) ** -bits
+    y, error = _in_units(x, bits)
+    powers = [_number(1 << bits, bits)]
+    while abs(powers[-1]) > 1:
+        powers.append((powers[-1] * y >> bits) // len(powers))
+    n, size = len(powers), (abs(x) + error * unit).upper()
+    # One rounding, less than a unit, changes the later powers by no more than exp.
+    return powers, ((n + error) * unit + size ** n / arb.fac_ui(n)) * size.exp(), size.exp()
+
+
+def _in_units(x: Any, bits: int) -> tuple[Any, Any]:
+    """An integer near a ball, and how far from it the ball reaches."""
+    scaled = x * arb(2) ** bits
+    mantissa, exponent = scaled.mid().man_exp()
+    nearest = int(mantissa) << int(exponent) if exponent >= 0 else int(mantissa) >> -int(exponent)
+    return _number(nearest, bits), abs(scaled - nearest).upper()
 
 
 def _number(x: int, bits: int) -> Any:
@@ -224,57 +228,41 @@ def _number(x: int, bits: int) -> Any:
     return fmpz(x) if bits > 800 else x
 
 
-def _solve(rows: list[list[tuple[int, list[Any]]]], bits: int) -> list[Rows]:
-    """The Taylor polynomial, a list of integers for each entry of each column, until four orders add nothing."""
-    size = len(rows)
-    sparse = [[(j, *_without_zeros(coefficients)) for j, coefficients in row] for row in rows]
+def _column(taylor: Taylor, size: int, start: int, bits: int) -> list[Parts]:
+    """The Taylor polynomials of one column, entry by entry, the highest power first.
+
+    So ``sum_m P_m F_{k-m}`` multiplies two sequences from their beginnings on.  Parts that vanish are empty.
+    """
+    links = [(i, j, r, part) for (i, j), (parts, _) in taylor.items() for r, part in enumerate(parts) if part]
+    alive = {(start, 0)}
+    while more := {(i, (p + r + 1) % 2) for i, j, r, _ in links for p in (0, 1) if (j, p) in alive} - alive:
+        alive |= more
     one = _number(1 << bits, bits)
-    columns: list[Rows] = [[[one if i == j else 0 * one] for i in range(size)] for j in range(size)]
-    k, quiet = 0, 0
-    while quiet < 4 and k < MOST_ORDERS:
-        largest = 0
-        for found in columns:
-            new = [(_next(row, found, k) >> bits) // (k + 1) for row in sparse]
-            largest = max(largest, *map(abs, new))
-            for entry, value in zip(found, new, strict=True):
-                entry.append(value)
-        quiet = quiet + 1 if largest <= 1 else 0
+    column: list[tuple[deque[Any], deque[Any]]] = [
+        (deque([one * (i == start)] if (i, 0) in alive else []), deque()) for i in range(size)]
+    sums = [[(column[i][p], [(part, column[j][(p + r + 1) % 2]) for k, j, r, part in links if k == i])
+             for i, q in alive if q == p] for p in (0, 1)]
+    k, quiet, least = 0, 0, 2 * max((len(part) for *_, part in links), default=0)
+    while (quiet < 4 or k < least) and k < MOST_ORDERS:  # four orders that add nothing, and not those before P begins
         k += 1
-    return columns
+        new = [(sum([sum(map(mul, part, found)) for part, found in terms]) >> bits) // k for _, terms in sums[k % 2]]
+        for (found, _), x in zip(sums[k % 2], new, strict=True):
+            found.appendleft(x)
+        quiet = quiet + 1 if all(-2 < x < 2 for x in new) else 0
+    return list(column)
 
 
-def _without_zeros(coefficients: list[Any]) -> tuple[int, int, list[Any]]:
-    """``(first, step, coefficients[first::step])``: even and odd functions have every second coefficient only."""
-    for first, other in ((0, 1), (1, 0)):
-        if not any(coefficients[other::2]):
-            return first, 2, coefficients[first::2]
-    return 0, 1, coefficients
+def _defect(taylor: Taylor, column: list[Parts], i: int, unit: Any) -> Any:
+    """``sup |h P F - F'|`` on [0, 1] for one entry, in units.
 
-
-def _next(row: list[tuple[int, int, int, list[Any]]], found: Rows, k: int) -> Any:
-    """Coefficient ``k`` of one entry of ``P F``, times ``4**bits``."""
-    total = 0
-    for j, first, step, coefficients in row:
-        if len(coefficients) == 1 and first <= k:
-            total += coefficients[0] * found[j][k - first]
-        elif first <= k:
-            total += sum(map(mul, coefficients, found[j][k - first::-step]))
+    Beyond the last order are the products of the m-th coefficient of a part of ``P`` with the last ``m`` of ``F``.
+    """
+    orders = sum(map(len, column[i]))
+    total = arb(orders * (orders + 1))
+    for (k, j), (parts, slack) in taylor.items():
+        if k == i:
+            for found in column[j]:
+                sizes = list(map(abs, found))
+                beyond = [sum(map(mul, map(abs, part), accumulate(chain(sizes, repeat(0))))) for part in parts]
+                total += (slack * sum(sizes) + sum(beyond)) * unit
     return total
-
-
-def _defect(rows: list[list[tuple[int, list[int]]]], columns: list[Rows], slack: dict[tuple[int, int], Any],
-            bits: int) -> Any:
-    """``sup |h P F - F'|`` on [0, 1], entry by entry."""
-    size, unit = len(rows), arb(2) ** -bits
-    polynomials = [[fmpz_poly(entry) for entry in column] for column in columns]
-    sizes = [[sum(map(abs, entry)) for entry in column] for column in columns]
-    one = fmpz_poly([1 << bits])
-    P = [[(j, fmpz_poly(coefficients)) for j, coefficients in row] for row in rows]
-    result = []
-    for i in range(size):
-        result.append([
-            arb(sum(map(abs, (sum((p * polynomials[j][k] for k, p in P[i]), -one * polynomials[j][i].derivative()))
-                        .coeffs()))) * unit * unit
-            + sum((slack[i, k] * sizes[j][k] * unit for k, _ in P[i]), arb(0))
-            for j in range(size)])
-    return arb_mat(result)

@@ -8,7 +8,7 @@ from flint import arb, arb_mat, ctx, fmpq
 from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt
 
-from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, enclosure
 from tests.conftest import CHECKS
 from tests.fastpicard.test_reference_cases import cases, numbers, read, system
 from tests.oracles import true_fundamental_matrix
@@ -65,6 +65,21 @@ def test_an_enclosure_holds_the_value_at_twice_the_digits(F, x, y, digits):
 def pairs(left, right):
     """Entries side by side."""
     return zip(left.entries(), right.entries(), strict=True)
+
+
+@settings(max_examples=30)
+@given(st.sampled_from(SYSTEMS), numbers_drawn, numbers_drawn, st.integers(1, 40), st.integers(8, 60))
+def test_a_step_that_ends_too_early_pays_with_its_radius(F, x, y, orders, bits):
+    """The defect sees what is left out, by few orders as by few bits: one step over a quarter of the period."""
+    values = F._numbers({a: x, b: y, c: fmpq(1, 7)})
+
+    with ctx.workprec(200), pytest.MonkeyPatch.context() as patch:
+        P, period = F._at(values)
+        fine, rough = (enclosure._step(P.shifted(period / 7), period / 4, [0] * P.size, n) for n in (200, bits))
+        patch.setattr(enclosure, "MOST_ORDERS", orders)
+        short = enclosure._step(P.shifted(period / 7), period / 4, [0] * P.size, 200)
+
+        assert all(wide.contains(narrow.mid()) for coarse in (rough, short) for wide, narrow in pairs(coarse, fine))
 
 
 @settings(max_examples=10)

@@ -35,6 +35,11 @@ def test_solutions_agree_with_an_integrator_of_another_house(a, q, z):
             assert abs(found - value) < 1e-15 * max(1, abs(value))
 
 
+def test_at_zero_they_are_one_and_nothing():
+    """Exactly, not a ball around 0."""
+    assert mathieu_c(2, 3, 0) == 1 and mathieu_s(2, 3, 0) == 0
+
+
 @settings(max_examples=30)
 @given(st.floats(0.1, 30).filter(lambda a: not math.sqrt(a).is_integer()))  # squares are on a boundary
 def test_without_q_they_are_circular(a):
