@@ -21,10 +21,12 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.register_profile("brief", max_examples=10, deadline=None, derandomize=True, database=None)
-# HYPOTHESIS_PROFILE=nightly python -m pytest -n 2 tests/fastpicard/test_enclosure.py: 100000 containment checks.
+# HYPOTHESIS_PROFILE=nightly python -m pytest tests/fastpicard/test_enclosure.py -k twice_the_digits: 100000 containment
+# checks, an hour of processor time; or CHECKS=25000 and --hypothesis-seed=1 to 4 in processes side by side.
 settings.register_profile("nightly", max_examples=10_000, deadline=None, database=None)
 
 PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "dev")
 settings.load_profile(PROFILE)
 
-CHECKS = {"ci": 2000, "nightly": 100_000}.get(PROFILE, 50)  # random containment checks of an enclosure
+# Random containment checks of an enclosure.
+CHECKS = int(os.environ.get("CHECKS", {"ci": 2000, "nightly": 100_000}.get(PROFILE, 50)))
