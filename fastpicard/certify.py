@@ -29,7 +29,7 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
-from fastpicard.local import BITS, LocalMap, amplitudes, common_bound, convex, order_for
+from fastpicard.local import BITS, LocalMap, amplitudes, common_bound, convex, order_for, polynomials
 from fastpicard.rectangles import Rectangles, bisected, cells, corners, flattened, grid, joined, narrowed
 from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
@@ -135,7 +135,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     F : FloquetMatrix
         of any order: the order that is needed is found.
     x, y : (Symbol, lo, hi)
-    seconds : float         when to stop halving; the models are built before that, whatever it takes
+    seconds : float         when to stop; the exact iterate is built before that, whatever it takes
     fixed : {Symbol: number}    for the other parameters
     modes : sequence of {Symbol: expression}, optional
         the system consists of several equations like F's, with these expressions in place of its parameters:
@@ -239,10 +239,9 @@ def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[lis
         order = order_for(majorant, period, REMAINDER)
         error = max(upper_float(x.upper()) for x in a_priori(majorant, period, order).entries())
         F = chart.F.to_order(order)
-        collapsed = Collapsed([modes for row in rule.entries(F) for modes in row], F.t)
-        maps = [LocalMap(chart.polynomials(collapsed, member), [error] * (F.shape[0] * F.shape[1]))
-                for member in chart.members]
-    return maps, order, error
+    collapsed = Collapsed([modes for row in rule.entries(F) for modes in row], F.t)
+    found, bits = polynomials(chart, collapsed, boxes, REMAINDER)
+    return [LocalMap(member, [error] * (F.shape[0] * F.shape[1]), bits) for member in found], order, error
 
 
 def _functions(rule: Criterion, maps: list[LocalMap], boxes: Rectangles, degree: int, rows: int) -> Models:
@@ -260,12 +259,15 @@ def _chunks(state: Halving, boxes: Rectangles, maps: list[LocalMap]) -> list[Chu
     np = numpy()
     rows = state.chart.F.shape[0]
     degree = 8 if rows <= 4 else 6
-    found = []
+    found: list[Chunk] = []
     for round_ in range(16):
         beyond = _beyond(maps, boxes, degree)
         large = beyond > ((TAIL if rows == 2 else TAIL / 100) if round_ < 15 else np.inf)
         good = np.flatnonzero(~large)
         for start in range(0, len(good), 48):
+            if state.over():
+                state.leave(boxes.at(np.concatenate([good[start:], np.flatnonzero(large)])))
+                return found
             part = boxes.at(good[start:start + 48])
             models = _functions(state.rule, maps, part, degree, rows)
             count = models.c.shape[1]

@@ -17,7 +17,7 @@ from typing import Any
 from fastpicard.charted import Charted
 from fastpicard.criteria import Criterion
 from fastpicard.evaluate import numpy
-from fastpicard.rectangles import Axes, cells
+from fastpicard.rectangles import Axes, Rectangles, cells
 from fastpicard.taylormodels import Models, joined, size
 
 Array = Any
@@ -79,6 +79,10 @@ class Halving:
         models = chunk.models.at(left)
         return [Chunk(chunk.lower[:, left], chunk.upper[:, left], Models(models.degree, models.c[:, open_],
                 models.e[open_]), chunk.rows[open_], signs)]
+
+    def leave(self, boxes: Rectangles) -> None:
+        """Record rectangles as undecided."""
+        self.done.append((cells(self.chart.axes, boxes.lower, boxes.upper), numpy().zeros(len(boxes), dtype="int8")))
 
     def refine(self, chunks: list[Chunk]) -> None:
         """Halve until the target or the end of the time."""

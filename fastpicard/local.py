@@ -5,8 +5,9 @@ On a rectangle with centre ``(c, c')`` and half sides ``(r, r')`` the polynomial
     f(c + r s, c' + r' t) = sum L_kl s**k t**l,        L = S(c, r) F S(c', r')^T,
     S(c, r)_ki = binomial(i, k) c**(i-k) r**k,
 
-two products of matrices.  They are computed in balls, since the terms of F cancel, and each of the few L_kl kept is
-rounded to a float; what is rounded, and the balls' radii, go into the error.  The same with absolute values everywhere,
+two products of matrices.  They are computed in balls of many bits, since the terms of F cancel, and each of the few
+L_kl kept is rounded to a float; what is rounded, and the balls' radii, go into the error.  The same with absolute
+values everywhere,
 
     |L| <= S(|c|, r) |F| S(|c'|, r')^T    entry by entry,
 
@@ -24,6 +25,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx
 
 from fastpicard.charted import Charted, Exponents, Member
+from fastpicard.collapsed import Collapsed
 from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.rectangles import Rectangles
@@ -31,7 +33,8 @@ from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
 
 Array = Any
-BITS = 160  # of the polynomials: what cancels in them, and float64
+Polynomials = list[dict[Exponents, Any]]
+BITS = 160  # of the polynomials to begin with: what cancels in them, and float64
 
 
 # -- ranges --------------------------------------------------------------------
@@ -141,6 +144,28 @@ def shift(c: Any, r: Any, degree: int, n: int) -> Any:
                     for k in range(degree + 1)])
 
 
+def polynomials(chart: Charted, collapsed: Collapsed, boxes: Rectangles, tol: float) -> tuple[list[Polynomials], int]:
+    """The constants as polynomials in ``(u, w)``, member by member, and how many bits keep them sharp.
+
+    In the coefficients powers of pi cancel, in the polynomials their terms do; both grow with the order.  With so many
+    bits what is lost by both is at most ``tol`` on all rectangles.
+    """
+    reach = [arb(float(numpy().maximum(abs(boxes.lower[k]), abs(boxes.upper[k])).max())) for k in (0, 1)]
+    bits = BITS
+    while True:
+        with ctx.workprec(bits):
+            found = [chart.polynomials(collapsed, member) for member in chart.members]
+            if all(_lost(terms, reach, bits) <= tol for member in found for terms in member):
+                return found, bits
+        bits *= 2
+
+
+def _lost(terms: dict[Exponents, Any], reach: list[Any], bits: int) -> Any:
+    """What the radii of the coefficients, and the rounding of terms, make of a polynomial at most, roughly."""
+    return sum(((c.rad() + abs(c) * arb(2) ** (10 - bits)) * reach[0] ** i * reach[1] ** j
+                for (i, j), c in terms.items()), arb(0)).upper()
+
+
 class LocalMap:
     """Several polynomials in ``(u, w)``, recentred on rectangles.
 
@@ -148,13 +173,15 @@ class LocalMap:
     ----------
     polynomials : list of {(i, j): ball}
     errors : list of floats      how far each may be from the function it stands for
+    bits : int                   the working precision
     """
 
-    def __init__(self, polynomials: list[dict[Exponents, Any]], errors: list[float]) -> None:
+    def __init__(self, polynomials: Polynomials, errors: list[float], bits: int = BITS) -> None:
         np = numpy()
+        self.bits = bits
         self.shape = tuple(1 + max((e[k] for terms in polynomials for e in terms), default=0) for k in (0, 1))
         self.errors = errors
-        with ctx.workprec(BITS):
+        with ctx.workprec(bits):
             self.matrices = [arb_mat([[terms.get((i, j), arb(0)) for j in range(self.shape[1])]
                                       for i in range(self.shape[0])]) for terms in polynomials]
         self.sizes = np.zeros((len(polynomials), *self.shape))
@@ -169,7 +196,7 @@ class LocalMap:
         terms = exponents(degree)
         c = np.zeros((len(terms), len(self.matrices), len(boxes)))
         radii = np.zeros((len(self.matrices), len(boxes)))
-        with ctx.workprec(BITS):
+        with ctx.workprec(self.bits):
             rows: dict[tuple[float, float], list[Any]] = {}
             for m in range(len(boxes)):
                 (x, y), (r, q) = boxes.center[:, m].tolist(), boxes.half[:, m].tolist()

@@ -31,7 +31,7 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
-from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, shift
+from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, polynomials, shift
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
@@ -168,27 +168,23 @@ class _Work:
         np = numpy()
         self.first, self.second = chart.axes
         self.radius = radius
-        self.bits = int(-3.33 * np.log10(radius)) + 240  # pi cancels in the coefficients of high orders
         whole = Rectangles(np.array([[self.first.lo - 0.5], [self.second.lo]]),
                            np.array([[self.first.hi + 0.5], [self.second.hi]]))
         member = chart.members[0]
         majorant = common_bound([amplitudes(chart, member, whole)])
         more = {place: [(q, c + int(place == (1, 0)), s) for q, c, s in waves]
                 for place, waves in majorant.waves.items()}
-        with ctx.workprec(self.bits):
+        with ctx.workprec(int(-3.33 * np.log10(radius)) + 64):
             half = chart.period / 2
             wider = Harmonics(2, more)
             self.order = order_for(wider, half, radius * 1e-4)
             self.error = max(upper_float(z.upper()) for z in a_priori(wider, half, self.order).entries())
-            G = chart.F.to_order(self.order)
-            collapsed = Collapsed([modes for row in criterion(chart.F).entries(G) for modes in row], G.t)
-            self.polynomials = chart.polynomials(collapsed, member)
-            self.slopes = [_by_first(terms) for terms in self.polynomials]
-        self.local = LocalMap(self.polynomials + self.slopes, [self.error] * 8)
-        self.shape = self.local.shape
+        G = chart.F.to_order(self.order)
+        collapsed = Collapsed([modes for row in criterion(chart.F).entries(G) for modes in row], G.t)
+        (functions,), self.bits = polynomials(chart, collapsed, whole, radius * 1e-8)
         with ctx.workprec(self.bits):
-            self.matrices = [arb_mat([[terms.get((i, j), arb(0)) for j in range(self.shape[1])]
-                                      for i in range(self.shape[0])]) for terms in self.polynomials]
+            self.local = LocalMap(functions + [_by_first(terms) for terms in functions], [self.error] * 8, self.bits)
+        self.shape, self.matrices = self.local.shape, self.local.matrices[:4]
 
     def run(self) -> list[Tube]:
         """Slab by slab."""
@@ -280,7 +276,7 @@ class _Work:
             else:
                 lo = here
             new = (here - value / slope).mid() if not slope.contains(0) else (lo + hi) / 2
-            if abs(new - here) < arb(2) ** (150 - self.bits):
+            if abs(new - here) < arb(self.radius) * arb(2) ** -30:
                 return new.mid()
             if not (new > lo and new < hi):
                 new = ((lo + hi) / 2).mid()

@@ -43,12 +43,13 @@ def disagreements(chart, F, count, fixed=None, matrix=None):
 
 @pytest.mark.parametrize("F, x, y, fixed", [
     (MATHIEU, (a, -1, 5), (b, 0, 6), {}),
+    (MATHIEU, (a, 8, 12), (b, 9, 12), {}),
     (ONE_ROD, (h, 0, 0.5), (v, 0.1, 100), {}),
     (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - c * cos(2 * t), 0]]), t, 0), (a, -1, 2), (b, -1, 2), {c: 1}),
     (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - sin(2 * t) / 3, 0]]), t, 0), (a, -0.5, 1), (b, 0, 1), {}),
     (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 0), (a, -0.5, 1), (b, 0, 1), {c: Rational(1, 5)}),
     (FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 0), (c, -0.1, 0.5), (b, 0, 1), {a: Rational(1, 4)}),
-], ids=["Mathieu", "one rod", "two waves", "not reversible", "damped", "damping as axis"])
+], ids=["Mathieu", "Mathieu of many bits", "one rod", "two waves", "not reversible", "damped", "damping as axis"])
 def test_certified_cells_never_contradict_ball_taylor(F, x, y, fixed):
     """The verdict on random points in random cells, by the true equation integrated in balls."""
     chart = certify(F, x, y, fixed=fixed, undecided=2e-3, seconds=600)
@@ -167,6 +168,14 @@ def test_below_one_everything_is_unstable_by_convexity():
     chart = certify(ONE_ROD, (h, 0, 0.5), (v, 0.01, 1.4))
 
     assert (chart.fraction(Verdict.UNSTABLE), chart.order) == (pytest.approx(1), 0)
+
+
+def test_time_is_kept_to():
+    """What no time was left for is undecided, and still tiles the chart."""
+    chart = certify(MATHIEU, (a, -2, 4), (b, 0, 6), seconds=0)
+
+    assert chart.areas.sum() == pytest.approx(36)
+    assert int(chart.verdict(-1.9, 0.1)) == -1 and int(chart.verdict(3.5, 1)) == 0  # by convexity alone
 
 
 def test_progress_is_reported():
