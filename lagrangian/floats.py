@@ -16,7 +16,7 @@ from sympy import N, Rational, pi
 from .chain import CompiledChain
 from .errors import QuantityError
 from .machine import machine
-from .stepper import DONE, STUCK, TURN, TURN_LOW, advance
+from .stepper import DONE, STUCK, TURN, TURN_LOW, advance, room
 
 __all__ = ["FloatRun", "integrate_floats", "split", "wrapped"]
 
@@ -79,17 +79,18 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     n = len(chain)
     state, clock = np.zeros((5, n)), np.array([times[0], 0.0])
     state[:3], state[3:] = split(theta, True), split(omega, False)[:2]
-    out, record, kept = np.empty((len(times), 3, n)), np.empty((0, 0)), []
-    most = max(1, 100_000 // n)
-    given = chain.support.function is not None
-    found = steps = 0
+    out, kept = np.empty((len(times), 3, n)), []
+    record: Any = None
+    most = 1 if chain.support.function is not None else max(1, 100_000 // n)
+    most = min(most, 4096) if keep else most
+    found, steps, space = 0, 0, room(n, order)
     while True:
-        constant, waves = _shaking(chain, clock, order, given)
+        pull, waves = _shaking(chain, clock, order)
         if keep:
-            record = np.empty((min(most, 4096), 2 + n * (order + 4)))
+            record = np.empty((most, 2 + n * (order + 4)))
         outcome, made, found = machine(advance)(
-            chain.rods if rods is None else rods, chain.damping, chain.springs, constant, waves, order, tolerance,
-            state, clock, times, found, out, 1 if given else record.shape[0] or most, record)
+            chain.rods if rods is None else rods, chain.damping, chain.springs, pull, waves, tolerance, state,
+            clock, times, found, out, most, record, space)
         steps += made
         if keep:
             kept.append(record[:made])
@@ -105,16 +106,21 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
             return FloatRun(angle, turns, out[:, 2], steps, order, np.concatenate(kept) if keep else None)
 
 
-def _shaking(chain: CompiledChain, clock: Any, order: int, given: bool) -> tuple[Any, Any]:
-    """The acceleration of the first joint: its steady part, or its series about now, and its waves."""
-    g = float(chain.gravity.evalf(30))
-    if given:
-        ax, ay = chain.support.series(float(clock[0] + clock[1]), order, None)
-        constant, waves = np.array([ax, ay], dtype=float), np.zeros((0, 5))
-    else:
-        steady, waves = chain.support.floats
-        constant, waves = steady.reshape(2, 1).copy(), waves.copy()
-    constant[1, 0] += g
-    constant[1] *= chain.up
-    waves[:, 3:] *= chain.up
-    return constant, waves
+def _shaking(chain: CompiledChain, clock: Any, order: int) -> tuple[Any, Any]:
+    """The series about now of the acceleration of the first joint, shape (2, order), and its waves or None.
+
+    Where there are waves its steady part is one of them, of frequency 0, and the series is left to them.
+    """
+    g, up = float(chain.gravity.evalf(30)), chain.up
+    pull = np.zeros((2, order))
+    if chain.support.function is not None:
+        pull[:] = np.array(chain.support.series(float(clock[0] + clock[1]), order, None), dtype=float)[:, :order]
+        pull[1, 0] += g
+        pull[1] *= up
+        return pull, None
+    (ax, ay), waves = chain.support.floats
+    pull[:, 0] = ax, up * (ay + g)
+    if not len(waves):
+        return pull, None
+    waves = waves * np.array([1.0, 1.0, 1.0, up, up])
+    return pull, np.concatenate([[[0.0, pull[0, 0], 0.0, pull[1, 0], 0.0]], waves])

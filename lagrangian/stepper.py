@@ -17,9 +17,9 @@ import numpy as np
 
 from .angles import difference, product, sines
 from .machine import inlined
-from .taylor import expand, factor
+from .taylor import FACTORS, expand, factor, series_shape
 
-__all__ = ["DONE", "MORE", "STUCK", "advance"]
+__all__ = ["DONE", "MORE", "STUCK", "advance", "room"]
 
 MORE, DONE, STUCK = 0, 1, 2
 PI = float.fromhex("0x1.921fb54442d18p+1")
@@ -50,18 +50,19 @@ def joints(state: Any, s: Any, c: Any, delta: Any) -> None:
         delta[k] = d + turns * TURN
 
 
-def shake(constant: Any, waves: Any, clock: Any, order: int, ax: Any, ay: Any) -> None:
+def shake(waves: Any, clock: Any, pull: Any) -> None:
     """Taylor coefficients about the time ``clock`` of the acceleration of the first joint; rows as in Shaking."""
+    order = pull.shape[1]
     for j in range(order):
-        ax[j] = constant[0, j] if j < constant.shape[1] else 0.0
-        ay[j] = constant[1, j] if j < constant.shape[1] else 0.0
+        pull[0, j] = 0.0
+        pull[1, j] = 0.0
     for i in range(waves.shape[0]):
         q = waves[i, 0]
         angle, low = product(q, clock[0])
         s, c = sines(angle, low + q * clock[1])
         for j in range(order):
-            ax[j] += waves[i, 1] * c + waves[i, 2] * s
-            ay[j] += waves[i, 3] * c + waves[i, 4] * s
+            pull[0, j] += waves[i, 1] * c + waves[i, 2] * s
+            pull[1, j] += waves[i, 3] * c + waves[i, 4] * s
             s, c = c * q / (j + 1), -s * q / (j + 1)
 
 
@@ -106,25 +107,32 @@ def move(series: Any, order: int, h: float, state: Any) -> None:
         state[3, k], state[4, k] = total(high, low + state[4, k])
 
 
-def advance(rods: Any, damping: Any, springs: Any, constant: Any, waves: Any, order: int, tolerance: float, state: Any,
-            clock: Any, times: Any, found: int, out: Any, most: int, record: Any) -> Any:
+def room(n: int, order: int) -> tuple[Any, ...]:
+    """The arrays that :func:`advance` works in: for joints, factors, intermediate values and series."""
+    return np.empty((3, n)), np.empty((n, FACTORS)), np.empty((n, 6)), np.empty(series_shape(n, order))
+
+
+def advance(rods: Any, damping: Any, springs: Any, pull: Any, waves: Any, tolerance: float, state: Any, clock: Any,
+            times: Any, found: int, out: Any, most: int, record: Any, space: Any) -> Any:
     """Step until ``most`` steps are made or all times are reached.  Returns the outcome, steps and times found.
 
-    Shapes: rods (n, 8); damping, springs (n,) or None; constant (2, any), Taylor coefficients of the steady part of
-    the acceleration of the first joint; waves (w, 5); state (5, n): angle high, low, turns, rate high, low; clock
-    (2,), the time high, low; times (m,), of which ``found`` are done; out (m, 3, n): angle, turns, rate; record
-    (most, 2 + n (order + 4)) or (0, 0): start and length of each step, state and rates' series of each rod.
+    Shapes: rods (n, 8); damping, springs (n,) or None; pull (2, order), Taylor coefficients of the acceleration of
+    the first joint, written at every step where there are waves, (w, 5) or None; state (5, n): angle high, low, turns,
+    rate high, low; clock (2,), the time high, low; times (m,), of which ``found`` are done; out (m, 3, n): angle,
+    turns, rate; record (most, 2 + n (order + 4)) or None: start and length of each step, state and rates' series of
+    each rod; space as :func:`room` gives it.
     """
-    n = rods.shape[0]
-    s, c, delta, factors, held = np.empty(n), np.empty(n), np.empty(n), np.empty((n, 23)), np.empty((n, 6))
-    ax, ay, series = np.empty(order), np.empty(order), np.zeros((n, 5, order + 12 - order % 4))
+    n, order = rods.shape[0], pull.shape[1]
+    joint, factors, held, series = space
+    s, c, delta = joint[0], joint[1], joint[2]
     end = times[times.shape[0] - 1]
     for step in range(most):
         joints(state, s, c, delta)
         factor(rods, s, c, 1.0, factors)
-        shake(constant, waves, clock, order, ax, ay)
+        if waves is not None:
+            shake(waves, clock, pull)
         series[:] = 0.0
-        expand(factors, damping, springs, delta, state[3], ax, ay, order, 1.0, held, series)
+        expand(factors, damping, springs, delta, state[3], pull[0], pull[1], order, 1.0, held, series)
         remaining = (end - clock[0]) - clock[1]
         h = reach(series, order, tolerance)
         longest = 2.0 * abs(remaining) + 1e-300
@@ -136,7 +144,7 @@ def advance(rods: Any, damping: Any, springs: Any, constant: Any, waves: Any, or
             return STUCK, step, found
         if remaining < 0.0:
             h = -h
-        if record.shape[0] > 0:
+        if record is not None:
             row = record[step]
             row[0], row[1] = clock[0] + clock[1], h
             for k in range(n):
