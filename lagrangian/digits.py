@@ -47,9 +47,9 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
                      ) -> tuple[Any, Any, int]:
     """Angles and rates at ``times``, shape (times, n), as mpmath numbers of ``digits`` digits, and the number of steps.
 
-    ``theta``, ``omega`` and ``times`` are exact SymPy numbers; ``steps`` makes the :class:`Steps`.  Truncation and
-    rounding are below ``10**-digits`` a step.  Raises DriveError where the support's motion has no Taylor series,
-    QuantityError where a step shrinks to nothing.
+    ``theta``, ``omega`` and ``times`` are exact SymPy numbers; ``steps`` makes the :class:`Steps`.  Truncation is below
+    ``10**-digits`` a step, and in balls rounding too.  Raises DriveError where the support's motion has no Taylor
+    series, QuantityError where a step shrinks to nothing.
     """
     bits = int(digits * 3.3220) + GUARD
     context = mpmath.mp.clone()

@@ -1,4 +1,6 @@
-"""Plain Python functions as machine code, where numba is installed; the only file that knows of numba.
+"""Plain Python functions as machine code, where numba is installed.
+
+Only this file knows of numba, and :mod:`lagrangian.pairtype`, which adds a number type to it.
 
 The recursions of this package are written once, as plain functions of numbers and arrays.  Run as they are
 they take Python floats, NumPy arrays, mpmath numbers and python-flint balls; :func:`machine` translates the
@@ -11,7 +13,7 @@ once); sums are reordered only in functions marked so.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from hashlib import sha256
 from importlib import import_module
@@ -19,12 +21,13 @@ from importlib.util import find_spec
 from types import CodeType, FunctionType
 from typing import Any, TypeVar
 
-__all__ = ["has_numba", "inlined", "machine", "rebound", "reordered"]
+__all__ = ["as_written", "has_numba", "inlined", "machine", "rebound", "reordered", "stands_in"]
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 PACKAGE = __name__.rpartition(".")[0]
 _INLINED: set[Callable[..., Any]] = set()
 _REORDERED: set[Callable[..., Any]] = set()
+_STAND_INS: dict[Callable[..., Any], Any] = {}
 
 
 def inlined(function: AnyFunction) -> AnyFunction:
@@ -37,6 +40,14 @@ def reordered(function: AnyFunction) -> AnyFunction:
     """Mark a short function as :func:`inlined` does, whose sums may be taken in any order."""
     _REORDERED.add(function)
     return inlined(function)
+
+
+def stands_in(function: Callable[..., Any]) -> Callable[[AnyFunction], AnyFunction]:
+    """Mark a function that :func:`as_written` shall take in place of ``function``."""
+    def mark(other: AnyFunction) -> AnyFunction:
+        _STAND_INS[function] = other
+        return other
+    return mark
 
 
 @cache
@@ -58,33 +69,48 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
     return _translated(function)
 
 
+def as_written(function: Any, operators: tuple[Any, ...] = ()) -> Callable[..., Any]:
+    """``function`` translated by numba with every operation as it stands, neither contracted nor reordered.
+
+    It is kept on disk where ``operators`` names the functions that it reaches as operators of its types, which no code
+    shows; the file of ``function`` is to hold those types.
+    """
+    return _translated(function, True, operators)
+
+
 @cache
-def _translated(function: FunctionType) -> Callable[..., Any]:
+def _translated(function: FunctionType, written: bool = False, operators: tuple[Any, ...] = ()) -> Callable[..., Any]:
     numba = import_module("numba")
-    names = {name: _translated(callee) for name, callee in _callees(function)}
+    names = {name: _translated(callee, written) for name, callee in _callees(function, written)}
     copy = rebound(function, **names)
-    copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{_digest(function)}"
-    options = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy", "nogil": True}
+    digest = _shortened(_digest(part, written) for part in (function, *operators))
+    copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{digest}"
+    options = {"cache": bool(operators) or not written, "fastmath": set() if written else {"contract"},
+               "error_model": "numpy", "nogil": True}
     if function in _INLINED:
         options["forceinline"] = True
-    if function in _REORDERED:
+    if function in _REORDERED and not written:
         options["fastmath"] = {"contract", "reassoc", "nsz"}
     return numba.njit(**options)(copy)  # type: ignore[no-any-return]
 
 
-def _callees(function: FunctionType) -> Iterator[tuple[str, FunctionType]]:
-    """The functions of this package that ``function`` calls by name."""
+def _callees(function: FunctionType, written: bool) -> Iterator[tuple[str, FunctionType]]:
+    """The functions of this package that ``function`` calls by name, or what stands in for them."""
     for name in function.__code__.co_names:
         value = function.__globals__.get(name)
         if isinstance(value, FunctionType) and value.__module__.startswith(PACKAGE):
-            yield name, value
+            yield name, _STAND_INS.get(value, value) if written else value
 
 
-def _digest(function: FunctionType) -> str:
-    parts = [repr(_contents(function.__code__))]
+def _digest(function: FunctionType, written: bool) -> str:
+    parts = [repr(_contents(function.__code__)), str(written)]
     parts += [f"{name}={function.__globals__[name]!r}" for name in function.__code__.co_names
               if isinstance(function.__globals__.get(name), (int, float, tuple))]
-    parts += [_digest(callee) for _, callee in _callees(function)]
+    parts += [_digest(callee, written) for _, callee in _callees(function, written)]
+    return _shortened(parts)
+
+
+def _shortened(parts: Iterable[str]) -> str:
     return sha256("\n".join(parts).encode()).hexdigest()[:12]
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from math import ceil, log10
 from typing import Any
 
@@ -21,6 +22,7 @@ from .chain import CompiledChain
 from .compiled import CompiledEquations, compile_equations
 from .crossings import Crossing, Interpolant, find_crossings
 from .digits import best_order, integrate_digits
+from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .equations import EquationsOfMotion
 from .errors import NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
@@ -51,7 +53,8 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     accuracy : largest error of any angle that is wanted; rad.  Below 1e-14 numbers of enough digits are used
     method : ``"taylor"``, a method of SciPy's ``solve_ivp`` (``"DOP853"``, ...), ``"heyoka"`` if installed, or
         ``"linear"``, small swings about hanging, with their error against the nonlinear motion
-    digits : None, or how many decimal digits to compute with; results are then mpmath numbers
+    digits : None, or how many decimal digits to compute with; results are then mpmath numbers.  Up to 31 it is done in
+        double-double where numba is installed and its range suffices, else in balls; ``trajectory.method`` says so
     dense : whether ``trajectory.at(t)`` shall work between the times
     events : named :class:`Crossing` to look for, such as ``flips(chain)``
     progress : True for a line on the screen, or a function of the time reached
@@ -90,6 +93,9 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
         if method != "taylor":
             raise SceneError(f"method={method!r} computes in float64, which cannot give {accuracy:.1e}: choose "
                              f"'taylor'.")
+        if dense or events is not None:
+            raise SceneError(f"dense output and events come from float64 series, which cannot give {accuracy:.1e} or "
+                             f"digits={digits}: leave them out, or ask for an accuracy above {FLOAT_LIMIT:.0e}.")
         return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, report)
     keep = dense or events is not None
     if method == "taylor":
@@ -159,8 +165,7 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact
     used = digits if digits is not None else ceil(-log10(accuracy)) + 6
     exact = [[quantity(x, "state") for x in part] for part in (theta, omega)]
     while True:
-        angles, rates, steps = integrate_digits(chain, exact[0], exact[1], exact_times, used, None, report)
-        finer, _, _ = integrate_digits(chain, exact[0], exact[1], exact_times, used + 8, None, report)
+        kind, (angles, rates, steps), (finer, _, _) = _twice(chain, exact[0], exact[1], exact_times, used, report)
         context = angles.flat[0].context
         differences = [max(abs(x - context.convert(y)) for x, y in zip(*rows, strict=True))
                        for rows in zip(angles, finer, strict=True)]
@@ -172,8 +177,22 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact
     angle = angles - turns * (2 * context.pi)
     energy = chain.energy(np.asarray(angle if chain.springs is None else angles, dtype=float).T,
                           np.asarray(rates, dtype=float).T)
-    return Trajectory(times, angles, rates, turns, angle, energy, error, accuracy, f"taylor, {used} digits", steps,
-                      best_order(used), chain)
+    return Trajectory(times, angles, rates, turns, angle, energy, error, accuracy, f"taylor, {used} digits in {kind}",
+                      steps, best_order(used), chain)
+
+
+def _twice(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int,
+           report: Callable[[float], None] | None) -> tuple[str, Any, Any]:
+    """The numbers used, the motion, and a finer one: with other rounding of the data, or with eight digits more."""
+    if has_doubled(digits):
+        finer = partial(DoubledSteps, unsettled=UNIT)
+        try:
+            return ("double-double", integrate_digits(chain, theta, omega, times, digits, None, report, DoubledSteps),
+                    integrate_digits(chain, theta, omega, times, digits + 3, best_order(digits) + 4, None, finer))
+        except OutOfRange:
+            pass
+    return ("balls", integrate_digits(chain, theta, omega, times, digits, None, report),
+            integrate_digits(chain, theta, omega, times, digits + 8, None, report))
 
 
 # -- what is given --------------------------------------------------------------------------------------------
