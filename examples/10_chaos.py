@@ -36,7 +36,7 @@ def main() -> None:
     for k, angle in enumerate(triple.theta.T, 1):
         lower.plot(triple.times, angle, label=rf"$\theta_{k}$")
     for name, times in triple.events.items():
-        print(f"{name}: {', '.join(f'{x:.4f}' for x in times)} s")
+        print(f"{name}: {', '.join(f'{x:.4f} s' for x in times) or 'never'}")
         lower.plot(times, np.interp(times, triple.times, triple.theta[:, int(name[-1]) - 1]), "k.")
     lower.set(xlabel="time / s", ylabel="angle / rad", title="Three bobs; dots: a rod passes the upward vertical")
     lower.legend(loc="lower left", fontsize="small")

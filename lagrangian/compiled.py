@@ -95,9 +95,8 @@ def compile_equations(equations: EquationsOfMotion, values: Mapping[Any, Any] | 
     """Symbolic equations of motion as a function of numbers.
 
     ``values`` maps Symbols to numbers; ``target`` is ``"numpy"``, ``"mpmath"`` (computed at mpmath's current
-    precision) or
-    ``"numba"`` (NumPy where numba is not installed).  What the scene has not, drive, dampers, springs, is not in the
-    code.
+    precision) or ``"numba"`` (NumPy where numba is not installed).  What the scene has not, drive, dampers, springs,
+    is not in the code.
 
     Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number, SceneError for an
     unknown target, TextError for text.

@@ -28,8 +28,7 @@ class Trajectory:
         itself cannot hold after many turns
     energy : shape (m,), in the frame of the support; J.  See :meth:`lagrangian.CompiledChain.energy`
     error : shape (m,): estimated largest error of any angle up to each time; rad.  It is an estimate from a second,
-        tighter
-        run with other rounding of the data, not a bound
+        tighter run with other rounding of the data, not a bound
     accuracy : the error that was asked for; rad
     method, steps, order : how the motion was found
     events : mapping of names to arrays of times, see :class:`lagrangian.Crossing`
@@ -77,8 +76,8 @@ class Trajectory:
         if self.accurate:
             return f"Every angle is within about {worst:.1e} rad of the true motion; {self.accuracy:.1e} was asked for."
         return (f"From t = {float(self.predictable_until):.6g} on the accuracy asked for, {self.accuracy:.1e} rad, is "
-                f"lost: errors "
-                f"grow to {worst:.1e} rad.  Ask for more digits, as in simulate(..., digits=40), to see further.")
+                f"lost: errors grow to {worst:.1e} rad.  Ask for more digits, as in simulate(..., digits=40), to see "
+                "further.")
 
     def at(self, t: Any) -> tuple[Any, Any]:
         """Angles and rates at any time within the span, shape (n,), or (k, n) for k times; needs ``dense=True``."""
@@ -116,5 +115,4 @@ class Trajectory:
     def __repr__(self) -> str:
         span = f"{float(self.times[0]):.6g} to {float(self.times[-1]):.6g}"
         return (f"Trajectory({self.theta.shape[1]} rods, {len(self)} times from {span}, {self.method}, {self.steps} "
-                f"steps, "
-                f"error {float(self.error[-1]):.1e} rad)")
+                f"steps, error {float(self.error[-1]):.1e} rad)")
