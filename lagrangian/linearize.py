@@ -141,7 +141,12 @@ class LinearEquations:
         return replace(self, divisor=self.divisor / factor, **parts)
 
     def homogeneous(self) -> LinearEquations:
-        """The same equations without the remainder: what decides stability, not where a driven chain goes."""
+        """The same equations without the remainder: what decides their stability, not where a driven chain goes.
+
+        Two motions of a chain that is pushed horizontally differ by a solution of these.  The forced motion that both
+        share changes the stiffness only in second order of the horizontal amplitude, which linear equations leave out;
+        where fast horizontal driving matters, simulate.
+        """
         return replace(self, remainder=column([Integer(0)] * len(self.scene)))
 
     def first_order(self, omega0: Any, dimensionless: bool = True) -> FirstOrderSystem:
@@ -183,7 +188,8 @@ class LinearEquations:
             raise InhomogeneousError(
                 f"x' = P x has no place for a remainder, and this one is {_short(self.remainder)} (from the "
                 f"horizontal driving).  lin.homogeneous().first_order(omega0) drops it: the Floquet multipliers, and "
-                f"with them stability, are those of that part."
+                f"with them the stability of the linear equations, are those of that part.  What the forced motion "
+                f"itself does to stability is of second order in the horizontal amplitude, and not in these equations."
             )
         scales = natural_scales(self.scene, omega0) if dimensionless else ()
         tau = fresh_symbol("tau", self.scene, omega0)
