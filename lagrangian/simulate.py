@@ -69,9 +69,9 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     Speed and accuracy
     ------------------
     Ten seconds from 2 rad: 0.6 ms for two rods (12 digits are left), 2 ms for five (8), 10 ms for ten (2), after a
-    second or two
-    of translation once per machine.  50 digits: two rods, 4 s.  A trajectory never claims what it has not: see
-    ``trajectory.error``, ``.predictable_until`` and ``.verdict``.
+    second or two of translation once per machine.  Two rods with 28 digits: 0.12 s, after 6 s of translation; with 50
+    digits 10 s.  A trajectory never claims what it has not: see ``trajectory.error``, ``.predictable_until`` and
+    ``.verdict``.
 
     >>> chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], upright=False)
     >>> motion = simulate(chain, [1, 2], [0, 0], [0, 1, 2])
