@@ -22,7 +22,7 @@ from flint import arb, ctx
 from sympy import Symbol
 
 from fastpicard import plotting
-from fastpicard.charted import Axis, Charted, read_chart
+from fastpicard.charted import Axis, Charted, images, read_chart
 from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError
@@ -34,6 +34,7 @@ from fastpicard.rectangles import Rectangles, bisected, cells, corners, flattene
 from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
 from fastpicard.taylormodels import Models, stacked
+from fastpicard.tubes import Tubes
 
 Array = Any
 REMAINDER = 1e-13  # of every entry, on all rectangles that are not decided by convexity
@@ -55,7 +56,8 @@ class CertifiedChart:
     remainder : float               its proved distance from the truth, in every entry
     criterion : str                 what was asked of the signs
     seconds : float                 what it took, building included
-    tubes : tuple of Tube           boundaries to draw, see :meth:`with_tubes`
+    lines : tuple of arrays, shape (2, m)    boundaries to draw, see :meth:`with_tubes`
+    radius : float                  of the tubes around them, in the first parameter of the tubes; nan without tubes
     """
 
     x: Axis
@@ -66,7 +68,8 @@ class CertifiedChart:
     remainder: float
     criterion: str
     seconds: float
-    tubes: tuple[Any, ...] = field(default=(), repr=False)
+    lines: tuple[Array, ...] = field(default=(), repr=False)
+    radius: float = float("nan")
 
     @property
     def areas(self) -> Array:
@@ -105,9 +108,29 @@ class CertifiedChart:
                   else "the point lies in a rectangle that is not decided, or on the edge of two unlike ones")
         return Verdict(name, reason)
 
-    def with_tubes(self, tubes: Any) -> CertifiedChart:
-        """The same chart with the boundaries that :func:`tubes` found in the plane of its axes: lines of its plot."""
-        return replace(self, tubes=tuple(tubes.pieces))
+    def with_tubes(self, tubes: Tubes, modes: Any = None) -> CertifiedChart:
+        """The same chart with the boundaries that :func:`tubes` found as lines of its plot.
+
+        Parameters
+        ----------
+        tubes : Tubes       of the same equation, in the plane of the chart's axes or, with modes, of F's parameters
+        modes : as for :func:`certify`: every line is carried to the chart's axes, mode by mode, and drawn where the
+            chart leaves open whether the system is stable
+
+        Raises
+        ------
+        BadInputError
+            if the tubes are of other parameters, or a mode is not two powers that can be solved for both axes.
+        """
+        names = tubes.x[0], tubes.y[0]
+        axes = self.x.symbol, self.y.symbol
+        if modes is None and names != axes:
+            raise BadInputError(f"the tubes must be in the plane of the chart's axes {axes}, but they are in that of "
+                                f"{names}.  Give the modes that lead from one to the other.")
+        given = [piece.points(9 if modes is None else 2001) for piece in tubes.pieces]
+        lines = [numpy().array(line) for line in given] if modes is None else [
+            images(mode, names, axes, line) for mode in modes for line in given]
+        return replace(self, lines=tuple(lines), radius=tubes.radius)
 
     def plot(self, ax: Any = None, xlabel: str | None = None, ylabel: str | None = None,
              title: str | None = None) -> Any:

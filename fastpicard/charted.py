@@ -278,3 +278,22 @@ def _with_power(axis: Axis, exponents: list[int]) -> Axis:
     if power > 1 and axis.lo < 0:
         power = 1
     return Axis(axis.symbol, axis.lo, axis.hi, power)
+
+
+def images(mode: Mapping[Symbol, Any], names: tuple[Symbol, Symbol], axes: tuple[Symbol, Symbol],
+           points: tuple[Array, Array]) -> Array:
+    """Points in the plane of a mode's two parameters, in the plane of the axes: shape (2, m), nan where there is none.
+
+    ``a = c x**i y**j`` and ``b = d x**k y**l`` are linear equations for the logarithms of x and y.
+    """
+    np = numpy()
+    member = _member(mode, {}, *axes)
+    (c, (i, j)), (d, (k, l)) = (member[name] for name in names)
+    determinant = i * l - j * k
+    if determinant == 0:
+        raise BadInputError(f"{names[0]} = {mode[names[0]]} and {names[1]} = {mode[names[1]]} must determine {axes[0]} "
+                            f"and {axes[1]}, but they do not.  Draw these tubes in the plane of {names}.")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first, second = (np.log(np.asarray(z, dtype=float) / float(z0)) for z, z0 in zip(points, (c, d), strict=True))
+        found = np.exp(np.array([l * first - j * second, i * second - k * first]) / determinant)
+    return np.where(np.isfinite(found), found, np.nan)

@@ -6,7 +6,7 @@ from typing import Any
 
 from fastpicard.evaluate import numpy
 
-STABLE, UNSTABLE, UNDECIDED, ERROR = "#8fbf8f", "#f4f1ea", "#000000", "#b0b0b0"
+STABLE, UNSTABLE, UNDECIDED, LINE = "#8fbf8f", "#f4f1ea", "#000000", "#3a62d0"
 
 
 def pyplot() -> Any:
@@ -30,25 +30,43 @@ def _finish(ax: Any, x: Any, y: Any, xlabel: str | None, ylabel: str | None, tit
     return ax
 
 
-def _key(ax: Any, entries: list[tuple[str, str]]) -> None:
+def _key(ax: Any, entries: list[tuple[str, str]], line: str | None = None) -> None:
+    from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    ax.legend(handles=[Patch(facecolor=colour, edgecolor="0.5", label=label) for colour, label in entries],
-              loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=3, fontsize=9, frameon=False)
+    handles: list[Any] = [Patch(facecolor=colour, edgecolor="0.5", label=label) for colour, label in entries]
+    if line:
+        handles.append(Line2D([], [], color=LINE, linewidth=1.2, label=line))
+    ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.11), ncols=2 if line else 3, fontsize=9,
+              frameon=False)
 
 
 def certified(chart: Any, ax: Any, xlabel: str | None, ylabel: str | None, title: str | None) -> Any:
     """A certified chart on a raster: a pixel is painted black if any part of it is undecided."""
+    np = numpy()
     ax = _axes(ax)
-    codes = raster(chart, 1200, 900)
-    colours = numpy().array([_rgb(colour) for colour in (UNSTABLE, UNDECIDED, STABLE)])
+    extent = ax.get_window_extent()  # no finer than the picture, which would lose black pixels otherwise
+    codes = raster(chart, *(int(min(1200, max(200, 0.9 * side))) for side in (extent.width, extent.height)))
+    colours = np.array([_rgb(colour) for colour in (UNSTABLE, UNDECIDED, STABLE)])
     ax.imshow(colours[codes.T + 1], origin="lower", aspect="auto", interpolation="nearest",
               extent=(chart.x.lo, chart.x.hi, chart.y.lo, chart.y.hi))
-    for tube in chart.tubes:
-        ax.plot(*tube.points(), color="#30549c", linewidth=0.8)
+    for x, y in chart.lines:
+        ax.plot(x, np.where(_open(chart, codes, x, y), y, np.nan), color=LINE, linewidth=1.2)
     _key(ax, [(STABLE, "stable, proved"), (UNSTABLE, "unstable, proved"),
-              (UNDECIDED, f"undecided: {chart.undecided:.1e} of the area")])
+              (UNDECIDED, f"undecided: {chart.undecided:.1e} of the area")],
+         f"boundary, proved to {chart.radius:.0e}" if chart.lines else None)
     return _finish(ax, chart.x, chart.y, xlabel, ylabel, title)
+
+
+def _open(chart: Any, codes: Any, x: Any, y: Any) -> Any:
+    """Whether points lie in pixels that are not decided."""
+    np = numpy()
+    with np.errstate(invalid="ignore"):
+        places = [(z - axis.lo) / (axis.hi - axis.lo) for z, axis in ((x, chart.x), (y, chart.y))]
+        inside = np.logical_and.reduce([(p >= 0) & (p <= 1) for p in places])
+    i, j = (np.minimum((np.where(inside, p, 0.0) * n).astype(int), n - 1)
+            for p, n in zip(places, codes.shape, strict=True))
+    return inside & (codes[i, j] == 0)
 
 
 def _rgb(colour: str) -> tuple[float, ...]:
@@ -87,7 +105,7 @@ def sampled(data: Any, ax: Any, xlabel: str | None, ylabel: str | None, title: s
               extent=(x[0] - dx, x[-1] + dx, y[0] - dy, y[-1] + dy))
     margin = data["margin"].values
     if (margin > 0).any() and (margin < 0).any():
-        ax.contour(x, y, margin, levels=[0.0], colors="#30549c", linewidths=0.8)
+        ax.contour(x, y, margin, levels=[0.0], colors=LINE, linewidths=0.8)
     _key(ax, [(STABLE, "stable"), (UNSTABLE, "unstable"), (UNDECIDED, "undecided")])
     ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=xlabel or f"${names[1]}$", ylabel=ylabel or f"${names[0]}$")
     if title:

@@ -72,10 +72,11 @@ class Tube:
             return value if digits is None else to_number(value, digits)
 
     def points(self, count: int = 9) -> tuple[Array, Array]:
-        """Points of the curve, for pictures: arrays of a and b."""
+        """Points of the curve, for pictures: arrays of a and b, in floats."""
         np = numpy()
-        line = np.linspace(self.lo, self.hi, count)
-        return np.array([float(self(float(b))) for b in line]), line
+        line = np.linspace(-1, 1, count)
+        return np.polynomial.polynomial.polyval(line, [float(c) for c in self.coefficients]), np.clip(
+            float(self.center) + float(self.half) * line, self.lo, self.hi)
 
 
 @dataclass(frozen=True)

@@ -79,6 +79,28 @@ def test_plots_are_drawn_with_labels():
         matplotlib.pyplot.close(picture.figure)
 
 
+def test_tubes_are_lines_of_charts_of_modes():
+    """v = sqrt(-mu/a), h = b/mu: every line that is drawn lies on the boundary; other planes are refused."""
+    curves = tubes(MATHIEU, (a, -0.5, 0), (b, 0, 0.4))
+    proved = certify(MATHIEU, (h, 0, 0.075), (v, 10, 100), modes=MODES, undecided=1e-3, seconds=600)
+    drawn = proved.with_tubes(curves, MODES)
+    axes = drawn.plot()
+    points = np.concatenate([line.get_xydata() for line in axes.lines])
+    points = points[points[:, 1] < 95]  # finite, and with room above
+    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+
+    assert any("boundary" in text for text in legend) and drawn.radius == curves.radius
+    assert len(points) > 100
+    for x, y in points[::len(points) // 25]:
+        sides = [int(proved.verdict(x, y * (1 + k * 0.02))) for k in (-1, 1)]
+        assert sides == [-1, 1] or sides == [1, -1], (x, y)
+    with pytest.raises(BadInputError, match="modes"):
+        proved.with_tubes(curves)
+    with pytest.raises(BadInputError, match="determine"):
+        proved.with_tubes(curves, [{a: h, b: h**2}])
+    matplotlib.pyplot.close(axes.figure)
+
+
 @pytest.mark.parametrize("points, error", [((1, 5), BadInputError), (400, BadTypeError), ((2.5, 3), BadTypeError)])
 def test_a_chart_needs_points(points, error):
     """Two at least along each axis."""
