@@ -56,7 +56,7 @@ class Jet:
         if not isinstance(other, Jet):
             return self._like([x * other for x in self.coefficients])
         x, y = self.coefficients, other.coefficients
-        return self._like([reduce(add, (x[i] * y[k - i] for i in range(k + 1))) for k in range(len(x))])
+        return self._like([reduce(add, map(mul, x[:k + 1], y[k::-1])) for k in range(len(x))])
 
     def __neg__(self) -> Jet:
         return self._like([-x for x in self.coefficients])
@@ -88,9 +88,9 @@ class Jet:
 
     def _solve(self, starts: list[Any], rates: list[tuple[int, int]]) -> list[Jet]:
         """Solve ``y_a' = sign x' y_b`` for all pairs ``rates[a] = (b, sign)`` at once."""
-        x, found = self.coefficients, [[y] for y in starts]
-        for k in range(1, len(x)):
-            new = [sign * reduce(add, (i * x[i] * found[b][k - i] for i in range(1, k + 1))) / k for b, sign in rates]
+        slopes, found = [i * x for i, x in enumerate(self.coefficients)][1:], [[y] for y in starts]
+        for k in range(1, len(self.coefficients)):
+            new = [sign * reduce(add, map(mul, slopes[:k], found[b][k - 1::-1])) / k for b, sign in rates]
             for series, y in zip(found, new, strict=True):
                 series.append(y)
         return [self._like(y) for y in found]

@@ -97,10 +97,12 @@ class Shaking:
         for wave in self.waves:
             q, cx, sx, cy, sy = (number(part) for part in wave)
             s, c = sines(q * t)
-            for j in range(order + 1):
-                x[j] += cx * c + sx * s
-                y[j] += cy * c + sy * s
-                s, c = c * q / (j + 1), -s * q / (j + 1)
+            a, b, d, e = cx * c + sx * s, sx * c - cx * s, cy * c + sy * s, sy * c - cy * s
+            for j in range(order + 1):  # a cos qh + b sin qh, d cos qh + e sin qh
+                x[j] += a
+                y[j] += d
+                ratio = q / (j + 1)
+                a, b, d, e = b * ratio, -a * ratio, e * ratio, -d * ratio
         return x, y
 
 
