@@ -13,7 +13,7 @@ import subprocess
 import time
 
 import numpy as np
-from sympy import Matrix, Rational, cos, symbols
+from sympy import CRootOf, Matrix, Poly, Rational, cos, eye, sqrt, symbols, zeros
 
 from fastpicard import FloquetMatrix, certify, chart, tubes
 from fastpicard.collapsed import Collapsed
@@ -23,6 +23,8 @@ from fastpicard.vectorise import Evaluator
 a, b, h, v, t = symbols("a b h v t")
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])
 MILLION = 1_000_000
+FIVE = Poly([362, -15699, 194760, -811026, 1011366, -229635], symbols("x"))  # det(B - mu A) of five equal rods
+MU = {2: (3 - 6 / sqrt(7), 3 + 6 / sqrt(7)), 5: [CRootOf(FIVE, k) for k in range(5)]}
 
 HEYOKA = """
 import json, sys, time
@@ -134,17 +136,42 @@ def certified() -> None:
     """Seconds for certified charts and tubes, building included."""
     F = FloquetMatrix(MATHIEU, t, 0)
     rod = FloquetMatrix(MATHIEU.subs({a: Rational(-3, 2) / v**2, b: Rational(3, 2) * h}), t, 0)
+    two, five = ([{a: -mu / v**2, b: mu * h} for mu in values] for values in (MU[2], MU[5]))
+
+    def waves(part: Rational) -> FloquetMatrix:
+        return FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - part * cos(2 * t), 0]]), t, 0)
+
     for name, run in (
         ("float chart with bounds, one rod, 1000 x 1000",
          lambda: chart(rod.to_order(20), (h, 0, 0.5), (v, 0.1, 100), points=(1000, 1000)).sizes),
         ("one rod, h in [0, 0.5], v in [0.1, 100]", lambda: certify(rod, (h, 0, 0.5), (v, 0.1, 100))),
-        ("Mathieu, a in [-1, 5], b in [0, 6]", lambda: certify(F, (a, -1, 5), (b, 0, 6), seconds=25)),
+        ("two rods, h in [0, 0.1], v in [0.1, 100]", lambda: certify(F, (h, 0, 0.1), (v, 0.1, 100), modes=two)),
+        ("five rods, h in [0, 0.02], v in [0.1, 1000]", lambda: certify(F, (h, 0, 0.02), (v, 0.1, 1000), modes=five)),
         ("tubes of rods, a in [-0.75, 0], b in [0, 0.75]", lambda: tubes(F, (a, -0.75, 0), (b, 0, 0.75))),
+        ("Mathieu, a in [-1, 5], b in [0, 6]", lambda: certify(F, (a, -1, 5), (b, 0, 6), seconds=25)),
         ("tubes of Mathieu, a in [-1, 5], b in [0, 6]", lambda: tubes(F, (a, -1, 5), (b, 0, 6))),
+        ("two rods with joint springs, h in [0, 0.3], v in [2, 30]",
+         lambda: certify(springs(2), (h, 0, 0.3), (v, 2, 30), seconds=60, undecided=1e-3)),
+        ("three rods with joint springs, h in [0, 0.15], v in [2, 30]",
+         lambda: certify(springs(3), (h, 0, 0.15), (v, 2, 30), seconds=120, undecided=1e-2)),
+        ("three rods with joint springs, h in [0, 0.15], v in [2, 100]",
+         lambda: certify(springs(3), (h, 0, 0.15), (v, 2, 100), seconds=120, undecided=1e-3)),
+        *((f"y'' + (a + b cos t + {part} cos 2t) y, a in [-1, 3], b in [-3, 3]",
+           lambda part=part: certify(waves(part), (a, -1, 3), (b, -3, 3), seconds=25))
+          for part in (Rational(1, 5), Rational(1), Rational(2))),
     ):
         start = time.process_time()
         found = run()
-        print(f"{name}: {time.process_time() - start:.1f} s of processor time; {found}")
+        print(f"{name}: {time.process_time() - start:.1f} s of processor time; {found}", flush=True)
+
+
+def springs(rods: int) -> FloquetMatrix:
+    """Equal upright rods with springs of m g l/5 in their joints, [Neves] (18): no normal modes decouple them."""
+    A = Matrix(rods, rods, lambda i, j: rods - max(i, j) - (Rational(2, 3) if i == j else Rational(1, 2)))
+    B = Matrix.diag(*(rods - i - Rational(1, 2) for i in range(rods)))
+    K = Matrix(rods, rods, lambda i, j: -1 if abs(i - j) == 1 else 0 if i != j else 1 if i == rods - 1 else 2)
+    S = A.inv() * (B * (h * cos(t) - 1 / v**2) + K / (5 * v**2))
+    return FloquetMatrix(zeros(rods).row_join(eye(rods)).col_join((-S).row_join(zeros(rods))), t, 0)
 
 
 def main() -> None:

@@ -18,14 +18,14 @@ h, v, t, c = symbols("h v t c")
 
 def main() -> None:
     figure, axes = plt.subplots(1, 2, figsize=(13, 5.5), constrained_layout=True)
-    springs = certify(coupled(Rational(1, 5)), (h, 0, 0.2), (v, 4, 40), seconds=25, undecided=1e-3)
+    springs = certify(coupled(Rational(1, 5)), (h, 0, 0.2), (v, 4, 40), seconds=40, undecided=1e-3)
     print(springs)
     springs.plot(axes[0], xlabel=r"$h = \epsilon/l$ (amplitude over length)",
                  ylabel=r"$v = \omega_0\sqrt{l/g}$ (dimensionless frequency)",
                  title=r"two rods, joint springs $\kappa = m g l/5$")
     S = Rational(3, 2) * (h * cos(t) - 1 / v**2)
     damped = FloquetMatrix(Matrix([[0, 1], [-S, -c]]), t, 0)
-    chart = certify(damped, (h, 0, 0.8), (v, 2, 40), fixed={c: Rational(1, 5)}, seconds=15)
+    chart = certify(damped, (h, 0, 0.8), (v, 2, 40), fixed={c: Rational(1, 5)}, seconds=40)
     print(chart)
     chart.plot(axes[1], xlabel=r"$h = \epsilon/l$ (amplitude over length)",
                ylabel=r"$v = \omega_0\sqrt{l/g}$ (dimensionless frequency)",

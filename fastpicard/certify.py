@@ -158,7 +158,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     F : FloquetMatrix
         of any order: the order that is needed is found.
     x, y : (Symbol, lo, hi)
-    seconds : float         when to stop; the exact iterate is built before that, whatever it takes
+    seconds : float         for rectangles, after the exact iterate is built: what is not decided then stays open
     fixed : {Symbol: number}    for the other parameters
     modes : sequence of {Symbol: expression}, optional
         the system consists of several equations like F's, with these expressions in place of its parameters:
@@ -196,10 +196,11 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     chart = read_chart(F, x, y, fixed, modes)
     rule = criterion(chart.F)
     boxes, done = _by_convexity(chart)
-    state = Halving(chart, rule, start, seconds, undecided, progress, done)
+    state = Halving(chart, rule, start, undecided, progress, done)
     order, error = 0, 0.0
     if len(boxes):
         local, order, error = _local_maps(chart, rule, boxes)
+        state.until = time.perf_counter() + seconds
         state.refine(_chunks(state, boxes, local))
     return _result(state, order, error)
 

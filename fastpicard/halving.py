@@ -41,9 +41,10 @@ class Chunk:
 class Halving:
     """What is decided, what is not, and how long it may take."""
 
-    def __init__(self, chart: Charted, rule: Criterion, start: float, seconds: float, target: float,
+    def __init__(self, chart: Charted, rule: Criterion, start: float, target: float,
                  progress: bool | Callable[[float, float], None], done: list[tuple[Array, Array]]) -> None:
-        self.chart, self.rule, self.start, self.seconds, self.target = chart, rule, start, seconds, target
+        self.chart, self.rule, self.start, self.target = chart, rule, start, target
+        self.until = float("inf")
         self.progress, self.done = progress, done
         self.whole = (chart.axes[0].hi - chart.axes[0].lo) * (chart.axes[1].hi - chart.axes[1].lo)
         self.chunks: list[Chunk] = []
@@ -105,7 +106,7 @@ class Halving:
 
     def over(self) -> bool:
         """Whether the time is."""
-        return time.perf_counter() - self.start > self.seconds
+        return time.perf_counter() > self.until
 
     def halved_twice(self, chunk: Chunk, halvings: float) -> list[Chunk]:
         """Two halvings, on the average one of each side."""
