@@ -1,10 +1,10 @@
-"""Chains of rods against SymPy with SciPy, heyoka, MuJoCo, Pinocchio and mpmath, in one run, as ratios.
+"""Chains of rods against SymPy with SciPy, PyDy, heyoka, MuJoCo, Pinocchio and mpmath, in one run, as ratios.
 
     python benchmarks/chains.py [rhs] [many] [motion] [digits] [start]
 
-A peer that is not installed is left out with a sentence (pip install heyoka mujoco pin).  Every time is the least of
-several repeats on one core; the machine decides the times, the ratios are what matters.  Every peer's answer is
-compared with ours before its time is printed.
+A peer that is not installed is left out with a sentence (pip install heyoka mujoco pin pydy cython).  Every time is
+the least of several repeats on one core; the machine decides the times, the ratios are what matters.  Every peer's
+answer is compared with ours before its time is printed.
 """
 
 # ruff: noqa: B023  (every function here is timed before its loop goes on)
@@ -23,7 +23,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from sympy import Integer, Rational
+from sympy import Integer, Rational, symbols
 
 from lagrangian import CompiledChain, Rod, Scene, compile_equations, euler_lagrange, simulate
 from lagrangian.digits import Steps, integrate_digits
@@ -100,11 +100,40 @@ def mujoco_chain(rods: tuple[Any, ...]) -> Callable[[Any, Any], Any]:
     return forward
 
 
+def pydy_chain(rods: tuple[Any, ...]) -> Callable[[Any, Any], Any]:
+    """PyDy's C (by Cython, where that is installed) for the equations of SymPy's KanesMethod."""
+    mechanics = import_module("sympy.physics.mechanics")
+    generate = import_module("pydy.codegen.ode_function_generators").generate_ode_function
+    n, frame, last = len(rods[0]), mechanics.ReferenceFrame("I"), mechanics.Point("O")
+    last.set_vel(frame, 0)
+    q, u = (mechanics.dynamicsymbols(f"{letter}:{n}") for letter in "qu")
+    g, t = symbols("g t")
+    names = [symbols(f"{letter}:{n}") for letter in "mlHJ"]
+    bodies, weights = [], []
+    for k, (m, l, H, J) in enumerate(zip(*names)):
+        axes = frame.orientnew(f"B{k}", "Axis", [-q[k], frame.z])
+        axes.set_ang_vel(frame, -u[k] * frame.z)
+        center, end = last.locatenew(f"C{k}", H * axes.y), last.locatenew(f"P{k}", l * axes.y)
+        for point in (center, end):
+            point.v2pt_theory(last, frame, axes)
+        inertia = mechanics.inertia(axes, 0, 0, J), center
+        bodies.append(mechanics.RigidBody(f"R{k}", center, axes, m, inertia))
+        weights.append((center, -m * g * frame.y))
+        last = end
+    kane = mechanics.KanesMethod(frame, q_ind=q, u_ind=u, kd_eqs=[x.diff(t) - y for x, y in zip(q, u)])
+    kane.kanes_equations(bodies, weights)
+    rates = generate(kane.forcing_full, q, u, [*(x for part in names for x in part), g],
+                     mass_matrix=kane.mass_matrix_full, generator="cython" if find_spec("Cython") else "lambdify")
+    mass, length, center_of, gyration = rods
+    numbers = np.concatenate([mass, length, center_of, mass * (gyration**2 - center_of**2), [GRAVITY]])
+    return lambda theta, omega: rates(np.concatenate([theta, omega]), 0.0, numbers)[n:]
+
+
 def right_hand_sides() -> None:
     print("\nOne right-hand side, random rods: us a call, and how many times ours")
     print(f"{'n':>8} {'ours':>9} {'ns/link':>8}   peers")
-    packages = {name: version(name) for name in ("mujoco", "pin")}
-    for n in (2, 10, 100, 300, 1000, 10_000, 100_000, 1_000_000):
+    packages = {name: version(name) for name in ("mujoco", "pin", "pydy")}
+    for n in (2, 5, 10, 100, 300, 1000, 10_000, 100_000, 1_000_000):
         rods, (theta, omega) = random_rods(n), state(n)
         chain = CompiledChain(*rods, GRAVITY)
         mine = chain.acceleration(0, theta, omega)
@@ -125,6 +154,14 @@ def right_hand_sides() -> None:
             assert abs(dense.acceleration(0, theta, omega) - mine).max() < 1e-9 * abs(mine).max()
             spent = least(lambda: dense.acceleration(0, theta, omega))
             cells.append(f"SymPy lambdify: {1e6 * spent:.4g} ({spent / ours:.3g}x)")
+        if n <= 10 and packages["pydy"]:
+            start = time.perf_counter()
+            generated = pydy_chain(rods)
+            found = generated(theta, omega)
+            waited = time.perf_counter() - start
+            assert abs(found - mine).max() < 1e-9 * abs(mine).max()
+            spent = least(lambda: generated(theta, omega))
+            cells.append(f"pydy {packages['pydy']}, after {waited:.1f} s: {1e6 * spent:.4g} ({spent / ours:.3g}x)")
         print(f"{n:>8} {1e6 * ours:>9.4g} {1e9 * ours / n:>8.3g}   {'; '.join(cells)}")
 
 
