@@ -51,6 +51,9 @@ def to_floats(values: Any) -> Any:
 def column(values: Any, name: str) -> Any:
     """float64 where that is what was given, else exact SymPy numbers as an object array."""
     refuse_text(values, name)
+    if getattr(values, "ndim", 1) > 1:
+        raise SceneError(f"{name} has shape {values.shape}: many chains at once have the same rods and differ in "
+                         f"their states, so give n numbers, and make one CompiledChain for every set of rods.")
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiu" and values.ndim == 1:
         if not np.isfinite(values).all():
             bad = values[~np.isfinite(values)][0]

@@ -212,13 +212,7 @@ def _system(system: Any) -> tuple[CompiledChain, Any]:
 
 
 def _times(times: Any) -> tuple[Any, list[Any]]:
-    refuse_text(times, "times")
-    try:
-        exact = [quantity(x, f"times[{i}]") for i, x in enumerate(times)]
-    except TypeError as refusal:
-        if type(refusal) is not TypeError:
-            raise
-        raise SceneError(f"times is {times!r}: give a list of times, the first of which is that of theta0.") from None
+    exact = _quantities(times, "times", "a list of times, the first of which is that of theta0")
     found = np.array([float(x) for x in exact])
     steps = np.diff(found)
     if not len(found) or not ((steps >= 0).all() or (steps <= 0).all()):
@@ -227,20 +221,24 @@ def _times(times: Any) -> tuple[Any, list[Any]]:
     return found, exact
 
 
-def _initial(values: Any, name: str, n: int) -> Any:
+def _quantities(values: Any, name: str, wanted: str) -> list[Any]:
+    """Exact numbers from any sequence of numbers; raises SceneError, saying what is wanted, where it is none."""
     refuse_text(values, name)
+    try:
+        entries = list(values)
+    except TypeError:
+        raise SceneError(f"{name} is {values!r}: give {wanted}.") from None
+    return [quantity(x, f"{name}[{k}]") for k, x in enumerate(entries)]
+
+
+def _initial(values: Any, name: str, n: int) -> Any:
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiu":
         found: Any = values.astype(np.float64)
         if not np.isfinite(found).all():
             raise QuantityError(f"{name} holds {found[~np.isfinite(found)].flat[0]}, which is not finite: give finite "
                                 f"numbers.")
     else:
-        try:
-            found = [quantity(x, f"{name}[{k}]") for k, x in enumerate(values)]
-        except TypeError as refusal:
-            if type(refusal) is not TypeError:
-                raise
-            raise SceneError(f"{name} is {values!r}: give one number for each of the {n} rods.") from None
+        found = _quantities(values, name, f"one number for each of the {n} rods")
         symbols = [x for x in found if not x.is_number]
         if symbols:
             raise QuantityError(f"{name} holds {symbols[0]}, which is no number: give numbers, such as 1/2 or pi.")
