@@ -79,14 +79,17 @@ def as_written(function: Any, operators: tuple[Any, ...] = ()) -> Callable[..., 
 
 
 @cache
-def _translated(function: FunctionType, written: bool = False, operators: tuple[Any, ...] = ()) -> Callable[..., Any]:
+def _translated(function: FunctionType, written: bool = False, operators: tuple[Any, ...] = (),
+                called: bool = False) -> Callable[..., Any]:
+    """``called``: from machine code alone, so that nothing is made for calls from Python, and nothing kept on disk."""
     numba = import_module("numba")
-    names = {name: _translated(callee, written) for name, callee in _callees(function, written)}
+    names = {name: _translated(callee, written, called=True) for name, callee in _callees(function, written)}
     copy = rebound(function, **names)
     digest = _shortened(_digest(part, written) for part in (function, *operators))
     copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{digest}"
-    options = {"cache": bool(operators) or not written, "fastmath": set() if written else {"contract"},
-               "error_model": "numpy", "nogil": True}
+    options = {"cache": (bool(operators) or not written) and not called, "no_cpython_wrapper": called,
+               "no_cfunc_wrapper": True, "fastmath": set() if written else {"contract"}, "error_model": "numpy",
+               "nogil": True}
     if function in _INLINED:
         options["forceinline"] = True
     if function in _REORDERED and not written:
