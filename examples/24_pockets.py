@@ -18,10 +18,11 @@ a, b, t = symbols("a b t")
 
 def main() -> None:
     F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t), 0]]), t, 44)
-    chart = certify(F, (a, -1, 3), (b, -3, 3), seconds=45, undecided=3e-4)
+    chart = certify(F, (a, -1, 3), (b, -3, 3), seconds=40, undecided=3e-4)
     print(chart)
     figure, axes = plt.subplots(figsize=(8, 6), constrained_layout=True)
-    chart.plot(axes, xlabel="a", ylabel="b", title=r"$y'' + (a + b\cos t + \cos 2t)\,y = 0$: proved")
+    chart.plot(axes, xlabel="a", ylabel="b",
+               title=r"$y'' + (a + b\cos t + \cos 2t)\,y = 0$; red: both periodic solutions coexist")
     found = boundaries(F)
     for f, g, start in ((0, 1, (1.25, 1.4)), (0, 1, (1.25, -1.4)), (2, 3, (2.7, 2.8)), (2, 3, (2.7, -2.8)),
                         (2, 3, (0.1, 0.1)), (2, 3, (2.3, 0.1))):

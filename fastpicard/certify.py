@@ -158,7 +158,8 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     F : FloquetMatrix
         of any order: the order that is needed is found.
     x, y : (Symbol, lo, hi)
-    seconds : float         for rectangles, after the exact iterate is built: what is not decided then stays open
+    seconds : float         for rectangles, after the exact iterate is built: what is not decided then stays open, nor
+        is halved what has filled a gigabyte
     fixed : {Symbol: number}    for the other parameters
     modes : sequence of {Symbol: expression}, optional
         the system consists of several equations like F's, with these expressions in place of its parameters:

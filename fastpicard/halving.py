@@ -22,6 +22,7 @@ from fastpicard.taylormodels import Models, joined, size
 
 Array = Any
 CHUNK = 8192  # rectangles at a time
+MOST = 1 << 27  # coefficients of undecided rectangles, a gigabyte: where nothing is decided they would fill the memory
 
 
 @dataclass
@@ -86,19 +87,23 @@ class Halving:
         self.done.append((cells(self.chart.axes, boxes.lower, boxes.upper), numpy().zeros(len(boxes), dtype="int8")))
 
     def refine(self, chunks: list[Chunk]) -> None:
-        """Halve until the target or the end of the time."""
+        """Halve until the target, the end of the time, or of the memory."""
         while chunks:
             rest = sum(map(self.area, chunks))
             if rest <= self.target or self.over():
                 break
             halvings = max(1.0, 1.0 + numpy().log2(rest / self.target))
             new: list[Chunk] = []
+            stored = 0
             for k, chunk in enumerate(chunks):
-                if self.over():
+                if self.over() or stored > MOST:
+                    self.until = 0.0
                     new += chunks[k:]
                     break
                 self.progress_line(rest)
-                new += self.halved_twice(chunk, halvings)
+                halves = self.halved_twice(chunk, halvings)
+                stored += sum(half.models.c.size for half in halves)
+                new += halves
             chunks = new
         self.chunks = chunks
         if self.progress is True:

@@ -212,6 +212,16 @@ def test_time_is_kept_to():
     assert int(chart.verdict(-1.9, 0.1)) == -1 and int(chart.verdict(3.5, 1)) == 0  # by convexity alone
 
 
+def test_memory_is_kept_to(monkeypatch):
+    """Where nothing is decided (all multipliers on the circle, by a criterion for damping) halving ends by itself."""
+    monkeypatch.setattr("fastpicard.halving.MOST", 1 << 16)
+    F = FloquetMatrix(Matrix([[0, 1, 0], [-a - b * cos(t), 0, 0], [0, 0, 0]]), t, 0)
+    chart = certify(F, (a, 0.3, 0.6), (b, 0, 0.1), seconds=600)
+
+    assert chart.areas.sum() == pytest.approx(0.03) and chart.undecided == pytest.approx(1)
+    assert len(chart.codes) < 1 << 16
+
+
 def test_progress_is_reported():
     """A function is called with the time and the part that is undecided."""
     seen = []
