@@ -32,6 +32,7 @@ from fastpicard.picard import FundamentalMatrix, PicardIterate, fast_picard, pic
 from fastpicard.series import PoissonSeries
 from fastpicard.spectrum import Multiplier
 from fastpicard.stability import Verdict
+from fastpicard.tables import tabulate
 from fastpicard.tubes import Tube, Tubes, tubes
 
 __version__ = "0.1.0"
@@ -70,5 +71,6 @@ __all__ = [
     "new_integrate",
     "picard",
     "product_to_sum",
+    "tabulate",
     "tubes",
 ]

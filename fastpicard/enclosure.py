@@ -59,13 +59,18 @@ def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: 
         if signs is None:
             return transition(P, arb(0), part) ** turns
         half = transition(P, arb(0), part / 2)
-        mirror = diagonal(signs)
         try:
-            return (mirror * half.inv() * mirror * half) ** turns
+            return mirrored(half, signs) ** turns
         except ZeroDivisionError:  # too wide to be known as invertible
             return transition(P, arb(0), part) ** turns
 
     return to_digits(once, digits, is_box, strict)
+
+
+def mirrored(half: Any, signs: Any) -> Any:
+    """``s X**-1 s X``, the whole way from the half."""
+    mirror = diagonal(signs)
+    return mirror * half.inv() * mirror * half
 
 
 def to_digits(compute: Callable[[], Any], digits: int, is_box: bool = False, strict: bool = True) -> Any:

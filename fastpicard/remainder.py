@@ -94,7 +94,7 @@ def _peak(P: Harmonics, period: Any) -> float:
 
 def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
     """The smallest ``n`` from which on the bound meets ``tol``: largest row sum."""
-    last = _a_priori_order(P, period, tol / 100)
+    last = a_priori_order(P, period, tol / 100)
     rest = a_priori(P, period, last)
     for level in range(0, LEVELS, 2):
         source = increments_at_end(P, period, last, level)
@@ -110,7 +110,7 @@ def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
     return n
 
 
-def _a_priori_order(P: Harmonics, period: Any, tol: Any) -> int:
+def a_priori_order(P: Harmonics, period: Any, tol: Any) -> int:
     """The smallest ``n`` whose a-priori bound meets ``tol``, by doubling and bisection."""
     high = 1
     while not largest_row_sum(a_priori(P, period, high)) <= tol:
