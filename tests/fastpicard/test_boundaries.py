@@ -9,7 +9,8 @@ from sympy.abc import a, b, c, h, t, v
 from fastpicard import BadInputError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 
-MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 40)
+MATHIEU_P = Matrix([[0, 1], [-a - b * cos(t), 0]])
+MATHIEU = FloquetMatrix(MATHIEU_P, t, 40)
 TWO_RODS = Matrix([[Rational(18, 7), Rational(-9, 7)], [Rational(-27, 7), Rational(24, 7)]])
 
 
@@ -35,6 +36,18 @@ def test_roots_are_characteristic_numbers(place, number):
     root = boundaries(MATHIEU)[place].root(a, (near - 0.006, near + 0.1), {b: 1.5})
 
     assert abs(root.value - near) <= root.error + 1e-15 < 1e-12
+
+
+@pytest.mark.parametrize("order", [8, 10, 12, 14, 16])
+def test_errors_of_rough_roots_hold_the_truth(order):
+    """a_0, a_1 and b_1 of b = 1 from few iterates: the claimed distance holds the true one, and is not wild."""
+    functions = boundaries(FloquetMatrix(MATHIEU_P, t, order))
+    for place, number in ((0, mathieu_a(0, -2)), (2, mathieu_a(1, -2)), (3, mathieu_b(1, -2))):
+        true = float(number) / 4
+        root = functions[place].root(a, (true - 0.1, true + 0.1), {b: 1}, digits=25)
+
+        assert abs(float(root.value) - true) <= root.error + 1e-15
+        assert root.error < 1e4 * abs(float(root.value) - true) + 1e-13
 
 
 def test_half_period_factors_multiply_to_the_trace():

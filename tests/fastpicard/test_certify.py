@@ -1,5 +1,6 @@
 """Certified charts: no rectangle contradicts the truth at a point, whatever the criterion."""
 
+import sys
 from fractions import Fraction
 from functools import cache
 
@@ -222,6 +223,16 @@ def test_memory_is_kept_to(monkeypatch):
     assert len(chart.codes) < 1 << 16
 
 
+def test_the_remainder_of_the_iterate_is_in_every_verdict(monkeypatch):
+    """With an iterate that may be wrong by 0.1 a wide strip stays open: |entry| < 0.1 is no sign."""
+    monkeypatch.setattr(sys.modules["fastpicard.certify"], "REMAINDER", 0.1)
+    monkeypatch.setattr("fastpicard.halving.MOST", 1 << 18)
+    chart = certify(MATHIEU, (a, -0.5, 1), (b, 0, 1), undecided=1e-3, seconds=600)
+
+    assert chart.remainder > 1e-3 and 0.01 < chart.undecided < 0.5
+    assert not disagreements(chart, MATHIEU, 25)
+
+
 def test_progress_is_reported():
     """A function is called with the time and the part that is undecided."""
     seen = []
@@ -295,6 +306,15 @@ def test_halves_are_the_same_function(f, s, u, along_y, upper):
 def test_a_sign_is_the_sign(f, s, u):
     """What signs() proves holds at every point."""
     assert int(model(f).signs()[0]) * exact(f, s, u) >= 0
+
+
+@settings(max_examples=100)
+@given(coefficients, st.fractions(0, 4, max_denominator=64), units, units)
+def test_a_sign_is_that_of_every_function_within_the_error(f, e, s, u):
+    """The model stands for all functions that differ from it by e at most."""
+    sign = int(Models(3, model(f).c, np.array([float(e)])).signs()[0])
+
+    assert sign == 0 or sign * exact(f, s, u) >= Fraction(float(e))
 
 
 @settings(max_examples=50)
