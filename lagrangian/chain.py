@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from sympy import Rational
 
-from .angles import sines_of_large_joints
+from .angles import LARGEST, sines_of_large_joints
 from .arithmetic import Arithmetic, arithmetic_of
 from .constants import (
     NAMES,
@@ -244,10 +244,15 @@ class CompiledChain:
         if not has_numba():
             return self._many(theta, omega, ax, ay, out)
         space = np.empty(7 * self._count) if self._count < LONG else self._space()
+        given: tuple[Any, ...]
         if self.model == "bobs":
-            return machine(single_bobs)(self.bobs, theta, omega, ax, ay, space, out)  # type: ignore[no-any-return]
-        tau = self.torques(theta, omega) if self.has_torques else None
-        return machine(single_rods)(self.rods, theta, omega, tau, ax, ay, space, out)  # type: ignore[no-any-return]
+            call, given = machine(single_bobs), (self.bobs, theta, omega, ax, ay)
+        else:
+            tau = self.torques(theta, omega) if self.has_torques else None
+            call, given = machine(single_rods), (self.rods, theta, omega, tau, ax, ay)
+        if call(*given, None, space, out):
+            return True
+        return bool(abs(theta).max() >= 0.5 * LARGEST) and bool(call(*given, True, space, out))
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""

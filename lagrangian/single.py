@@ -16,14 +16,17 @@ from .recursion import accelerate_bobs, accelerate_rods
 __all__ = ["single_bobs", "single_rods"]
 
 
-def joint_sines(theta: Any, omega: Any, s: Any, c: Any, z: Any) -> None:
-    """Sine and cosine of every joint angle, of any size, and the squares of the rates; all shapes (n,)."""
+def joint_sines(theta: Any, omega: Any, large: Any, s: Any, c: Any, z: Any) -> float:
+    """Sine and cosine of every joint angle, and the squares of the rates; all shapes (n,).  Returns the largest angle.
+
+    ``large`` is None where no angle passes ``LARGEST / 2``, so that the code for larger ones is not even translated.
+    """
     n = theta.shape[0]
     largest = 0.0
     for k in range(n):
         largest = max(largest, abs(theta[k]))
         z[k] = omega[k] * omega[k]
-    if largest < 0.5 * LARGEST:
+    if large is None:
         s[0], c[0] = sines(theta[0], 0.0)
         for k in range(1, n):
             d, e = difference(theta[k], theta[k - 1])
@@ -34,6 +37,7 @@ def joint_sines(theta: Any, omega: Any, s: Any, c: Any, z: Any) -> None:
             d, e = difference(theta[k], theta[k - 1])
             x, y, p, q = np.sin(d), np.cos(d), np.sin(e), np.cos(e)
             s[k], c[k] = x * q + y * p, y * q - x * p
+    return largest
 
 
 def finite(out: Any) -> bool:
@@ -44,22 +48,24 @@ def finite(out: Any) -> bool:
     return total == 0.0
 
 
-def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, space: Any, out: Any) -> bool:
-    """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite.
+def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, large: Any, space: Any,
+                out: Any) -> bool:
+    """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite, and right with these sines.
 
-    ``tau`` is (n,) or None; ``space``, (7 n,), is for intermediate values.
+    ``tau`` is (n,) or None; ``large`` None or True, see :func:`joint_sines`; ``space``, (7 n,), is for intermediate
+    values.
     """
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:7 * n].reshape(n, 4)
-    joint_sines(theta, omega, s, c, z)
+    largest = joint_sines(theta, omega, large, s, c, z)
     accelerate_rods(rods, z, tau, s, c, ax, ay, work, out)
-    return finite(out)
+    return finite(out) and (large is not None or largest < 0.5 * LARGEST)
 
 
-def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, space: Any, out: Any) -> bool:
+def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: Any, space: Any, out: Any) -> bool:
     """The same for bobs."""
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:5 * n].reshape(n, 2)
-    joint_sines(theta, omega, s, c, z)
+    largest = joint_sines(theta, omega, large, s, c, z)
     accelerate_bobs(bobs, z, s, c, ax, ay, work, out)
-    return finite(out)
+    return finite(out) and (large is not None or largest < 0.5 * LARGEST)
