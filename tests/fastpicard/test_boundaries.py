@@ -132,6 +132,14 @@ def test_pockets_close_where_ince_says():
         crossing(even, odd, a, b, (-40, 0.1))
 
 
+def test_a_crossing_of_rough_iterates_is_not_proved():
+    """At order 12 the iterate's curves cross, but its remainder leaves open whether the true ones do."""
+    even, odd, *_ = boundaries(FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t), 0]]), t, 12))
+
+    with pytest.raises(BadInputError, match="higher order"):
+        crossing(even, odd, a, b, (1.25, 1.4))
+
+
 def test_damping_has_no_such_boundaries():
     """The message says what to do instead."""
     with pytest.raises(BadInputError, match="certify"):
