@@ -240,19 +240,18 @@ class CompiledChain:
     def _joint_floats(self) -> tuple[Any, Any]:
         return to_floats(self._joints[0]), to_floats(self._joints[1])
 
-    def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> bool:
+    def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any, large: bool | None = None) -> bool:
         if not has_numba():
             return self._many(theta, omega, ax, ay, out)
         space = np.empty(7 * self._count) if self._count < LONG else self._space()
-        given: tuple[Any, ...]
         if self.model == "bobs":
-            call, given = machine(single_bobs), (self.bobs, theta, omega, ax, ay)
+            done = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, space, out)
         else:
             tau = self.torques(theta, omega) if self.has_torques else None
-            call, given = machine(single_rods), (self.rods, theta, omega, tau, ax, ay)
-        if call(*given, None, space, out):
-            return True
-        return bool(abs(theta).max() >= 0.5 * LARGEST) and bool(call(*given, True, space, out))
+            done = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, space, out)
+        if done or large or not abs(theta).max() >= 0.5 * LARGEST:
+            return done  # type: ignore[no-any-return]
+        return self._one(theta, omega, ax, ay, out, True)
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""
