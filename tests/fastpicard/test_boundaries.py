@@ -7,7 +7,7 @@ from sympy import Matrix, Rational, cos, diff, sin
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
-from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
+from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, sums_of_rho
 
 MATHIEU_P = Matrix([[0, 1], [-a - b * cos(t), 0]])
 MATHIEU = FloquetMatrix(MATHIEU_P, t, 40)
@@ -176,3 +176,14 @@ def test_sums_of_rho_from_traces(multipliers):
     traces = [sum(x**k + x**-k for x in multipliers) for k in range(1, 7)]
 
     assert sums_of_rho(traces, 6, 2 * n) == [sum((x + 1 / x) ** k for x in multipliers) for k in range(1, 7)]
+
+
+@settings(max_examples=50)
+@given(st.lists(st.fractions(-5, 5, max_denominator=7), min_size=1, max_size=3))
+def test_hermites_second_matrix_is_the_congruence(sigma):
+    """G = V' diag(sigma (4 - sigma)) V with V_ij = sigma_i**j, exactly."""
+    n = len(sigma)
+    sums = [sum(x**k for x in sigma) for k in range(1, 2 * n + 1)]
+    expected = [[sum(x ** (j + k) * x * (4 - x) for x in sigma) for k in range(n)] for j in range(n)]
+
+    assert hermite_from_zero(sums, n) == expected
