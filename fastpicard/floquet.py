@@ -20,6 +20,7 @@ from sympy import Expr, ImmutableMatrix, Symbol, pi
 
 from fastpicard import modes as algebra
 from fastpicard.collapsed import Collapsed
+from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Point, Values, ball, check_digits, exact_number, to_complex, upper_float
@@ -356,7 +357,7 @@ class FloquetMatrix:
         Verdict
             ``Verdict.STABLE`` (all solutions bounded for ``t >= 0``), ``Verdict.UNSTABLE`` or ``Verdict.UNDECIDED``,
             with the sentence that proves it as ``.reason``.  Undecided means within ``1e-100`` of a boundary, or
-            a box that a boundary may cross.
+            a box that a boundary may cross.  Where ``P`` is constant with rational entries it is never undecided.
 
         Raises
         ------
@@ -375,6 +376,9 @@ class FloquetMatrix:
         Verdict.UNSTABLE
         """
         exact = self._numbers(values)
+        constant = constant_matrix(self._P, exact)
+        if constant is not None:
+            return by_minimal_polynomial(constant)
         paired, forms = self._structure(exact)
         for digits in (10, 30, 100):
             matrix = self._true(exact, digits, strict=False)

@@ -45,7 +45,7 @@ def symplectic_forms(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[Any]:
     places = list(combinations(range(size), 2))
     if size % 2:
         return []
-    kernel = _kernel([_condition(A, size, places) for A in _coefficients(P, values)], len(places))
+    kernel = _kernel([_condition(A, size, places) for A in coefficients(P, values).values()], len(places))
     basis = [_antisymmetric(vector, size, places) for vector in kernel]
     for attempt in range(1, 6):
         weights = [fmpq(factorial(attempt + k) % 97 + k + 1) for k in range(len(basis))]
@@ -62,8 +62,8 @@ def _antisymmetric(vector: list[Any], size: int, places: list[tuple[int, int]]) 
     return form
 
 
-def _coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[dict[tuple[int, int], Any]]:
-    """The constant matrices that multiply independent functions in ``P``."""
+def coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> dict[Any, dict[tuple[int, int], Any]]:
+    """The constant matrices that multiply independent functions in ``P``, by (kind, angle, monomial) of these."""
     found: dict[Any, dict[tuple[int, int], Any]] = {}
     for i, row in enumerate(P.rows):
         for j, modes in enumerate(row):
@@ -77,7 +77,7 @@ def _coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[dict[tuple
                         rest.append((g, e))
                 matrix = found.setdefault((kind, angle, tuple(rest)), {})
                 matrix[i, j] = matrix.get((i, j), fmpq(0)) + value
-    return list(found.values())
+    return found
 
 
 def _condition(A: dict[tuple[int, int], Any], size: int, places: list[tuple[int, int]]) -> list[list[Any]]:
