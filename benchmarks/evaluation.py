@@ -87,7 +87,7 @@ def measure(n: int, points: int, repeats: int) -> None:
     start = time.process_time()
     f = F.lambdify_trace([a, b], bound=True)
     build = time.process_time() - start
-    collapsed = F._collapsed_trace
+    collapsed = F.collapsed_trace
     values, bounds = f(x, y)
     route = Evaluator(collapsed, (a, b))([x, y])[2]
     share = ", ".join(f"{100 * np.mean(route == k):.2g}% {name}" for k, name in enumerate(NAMES))

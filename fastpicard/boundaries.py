@@ -71,8 +71,8 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
     >>> boundaries(F)[2].root(a, (-0.7, 0.2), {b: 1.5}).value
     -0.6963449249569149
     """
-    size, signs = F.shape[0], reversal(F._P)
-    if size % 2 or not pairs(F._P)[0]:
+    size, signs = F.shape[0], reversal(F.P)
+    if size % 2 or not pairs(F.P)[0]:
         raise BadInputError("boundaries need multipliers in pairs lambda, 1/lambda, and those of this P do not come in "
                             "pairs (damping, say).  Use certify or F.verdict, which ask whether all are inside the "
                             "unit circle.")
@@ -85,11 +85,11 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
             block = [[half[i][j] for j in columns] for i in rows]
             found.append(Boundary(F, label, parity, block, determinant, half=True))
     else:
-        whole = [[F._entry(i, j) for j in range(size)] for i in range(size)]
+        whole = [[F.entry(i, j) for j in range(size)] for i in range(size)]
         found += [Boundary(F, "+1", "", whole, _at_plus), Boundary(F, "-1", "", whole, _at_minus)]
     if size > 2:
         if signs is not None and signs.count(1) == size // 2:
-            block = [[F._entry(i, j) for j in plus] for i in plus]
+            block = [[F.entry(i, j) for j in plus] for i in plus]
             found.append(Boundary(F, "collision", "", block, _discriminant_of_block))
         else:
             found.append(Boundary(F, "collision", "", whole, _discriminant))
@@ -237,8 +237,8 @@ class Boundary:
     def _proved(self, x: Symbol, exact: dict[Any, Any], value: Any, dual: list[Any]) -> float:
         """A distance at which the true function is proved to have different signs on both sides."""
         values = {**exact, x: value}
-        period = self._F._at(values)[1]
-        bound = a_posteriori(harmonics(self._F._P, values), period / 2 if self._half else period, self._F.n)
+        period = self._F.at(values)[1]
+        bound = a_posteriori(harmonics(self._F.P, values), period / 2 if self._half else period, self._F.n)
         largest = max((entry.upper() for entry in bound.entries()), default=arb(0))
         slack = [2 * largest] * (len(self._entries) * self._columns)
         at = self._dual(values, (), slack)[0]

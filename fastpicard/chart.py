@@ -80,9 +80,9 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     first, second = problem.axes
     xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
-    paired, _ = pairs(problem.F._P)
+    paired, _ = pairs(problem.F.P)
     scalar = paired and problem.F.shape == (2, 2)
-    compute = _by_matrix if not scalar else _by_factors if reversal(problem.F._P) == (1, -1) else _by_trace
+    compute = _by_matrix if not scalar else _by_factors if reversal(problem.F.P) == (1, -1) else _by_trace
     best: list[Array] | None = None
     for member in problem.members:
         found = list(compute(problem, member, grid, paired))
@@ -120,7 +120,7 @@ def _counts(points: Any) -> Sequence[int]:
 
 
 def _shown(problem: Charted) -> str:
-    text = str(problem.F._P.as_matrix().tolist())
+    text = str(problem.F.P.as_matrix().tolist())
     return text if len(text) < 300 else text[:297] + "..."
 
 
@@ -145,7 +145,7 @@ def _evaluated(problem: Charted, member: Member, collapsed: Collapsed, grid: lis
 
 def _by_trace(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
     np = numpy()
-    values, bounds = _evaluated(problem, member, problem.F._collapsed_trace, grid)
+    values, bounds = _evaluated(problem, member, problem.F.collapsed_trace, grid)
     trace = values[0]
     error = bounds[0] + 2 * _remainder(problem, member, grid) + 2.0**-46 * (1 + abs(trace))  # the parameters' rounding
     return trace, np.where(np.isnan(trace), np.nan, 2 - abs(trace)), error
@@ -213,7 +213,7 @@ def _tail(z: Array, n: int) -> Array:
 def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
     np = numpy()
     size = problem.F.shape[0]
-    values, bounds = _evaluated(problem, member, problem.F._collapsed, grid)
+    values, bounds = _evaluated(problem, member, problem.F.collapsed, grid)
     matrices = values.T.reshape(-1, size, size)
     good = np.isfinite(matrices).all(axis=(1, 2))
     matrices = np.where(good[:, None, None], matrices, np.eye(size))

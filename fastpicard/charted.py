@@ -116,7 +116,7 @@ class Charted:
     def waves(self, member: Member) -> dict[tuple[int, int], dict[Any, dict[Exponents, Any]]]:
         """``P`` by entries and waves (kind, frequency): the amplitudes as polynomials in u and w."""
         found: dict[tuple[int, int], dict[Any, dict[Exponents, Any]]] = {}
-        for i, row in enumerate(self.F._P.rows):
+        for i, row in enumerate(self.F.P.rows):
             for j, modes in enumerate(row):
                 for (kind, angle, monomial), f in modes.items():
                     powers, number = parameters_of(monomial)
@@ -201,20 +201,20 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
             raise MissingParameterError(f"every parameter must be on an axis or have a value, but "
                                         f"{', '.join(map(str, missing))} is neither.  Give it in fixed={{...}}.")
     used = [[sum(member[s][1][k] * e for s, e in parameters_of(monomial)[0]) for member in members
-             for row in F._P.rows for entry in row for _, _, monomial in entry] for k in (0, 1)]
+             for row in F.P.rows for entry in row for _, _, monomial in entry] for k in (0, 1)]
     axes = (_with_power(first, used[0]), _with_power(second, used[1]))
     return Charted(F, axes, members, decoupled)
 
 
 def parameters(F: FloquetMatrix) -> set[Symbol]:
     """All parameters of ``P``."""
-    return {symbol for row in F._P.rows for modes in row for _, _, monomial in modes
+    return {symbol for row in F.P.rows for modes in row for _, _, monomial in modes
             for symbol, _ in parameters_of(monomial)[0]}
 
 
 def with_values(F: FloquetMatrix, values: Mapping[Symbol, Expr]) -> FloquetMatrix:
     """The same equation with numbers put in, exactly."""
-    return FloquetMatrix(F._P.as_matrix().xreplace(dict(values)), F.t, F.n, F.period.xreplace(dict(values)))
+    return FloquetMatrix(F.P.as_matrix().xreplace(dict(values)), F.t, F.n, F.period.xreplace(dict(values)))
 
 
 def _exact_expression(value: Any, symbol: Symbol) -> Expr:

@@ -60,8 +60,8 @@ class Criterion:
 
 def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
-    size, signs = F.shape[0], reversal(F._P)
-    paired, form = pairs(F._P)
+    size, signs = F.shape[0], reversal(F.P)
+    paired, form = pairs(F.P)
     balanced = signs is not None and 2 * signs.count(1) == size
     if paired and balanced and size == 2:
         return Criterion("half-period factors of trace -+ 2", True, half_period, _flat, _by_factors)
@@ -75,7 +75,7 @@ def criterion(F: FloquetMatrix) -> Criterion:
 
 
 def _whole(F: FloquetMatrix) -> list[list[Modes]]:
-    return [[F._entry(i, j) for j in range(F.shape[1])] for i in range(F.shape[0])]
+    return [[F.entry(i, j) for j in range(F.shape[1])] for i in range(F.shape[0])]
 
 
 def _flat(rows: Rows) -> list[Models]:

@@ -99,8 +99,8 @@ def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[A
 def _wide_remainder(f: Boundary, values: dict[Any, Any]) -> Any:
     """The remainder for all complex parameters within 1, hence of derivatives, too."""
     wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1).upper()) for s, v in values.items()}
-    period = f._F._at(values)[1]
-    bound = a_priori(harmonics(f._F._P, wide), period / 2 if f._half else period, f._F.n)
+    period = f._F.at(values)[1]
+    bound = a_priori(harmonics(f._F.P, wide), period / 2 if f._half else period, f._F.n)
     return max((entry.upper() for entry in bound.entries()), default=arb(0))
 
 

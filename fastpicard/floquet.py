@@ -10,6 +10,7 @@ sine 0, and what is left of the iterate is a polynomial in the parameters and ``
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from math import gcd
 from typing import Any
@@ -41,6 +42,7 @@ from fastpicard.writing import write
 _BOUND_BITS = 8192  # the precision of P and T where a bound is asked for
 
 
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class FloquetMatrix:
     """``Phi_n(T)``: the n-th exact Picard iterate of the Floquet matrix, a polynomial in the parameters and ``T``.
 
@@ -61,6 +63,9 @@ class FloquetMatrix:
     Attributes
     ----------
     t : Symbol;  n : int;  period : Expr;  shape : (m, m)
+    P : SeriesMatrix
+    length, turns : the period as a polynomial in its symbols, and how many least common periods of ``P`` it is
+    increments, entry(i, j), collapsed, collapsed_trace : the iterate in the engine's own form, not yet SymPy
 
     Raises
     ------
@@ -81,6 +86,12 @@ class FloquetMatrix:
     4*pi**4*a**2/3 - 4*pi**2*a - 2*pi**2*b**2 + 2
     """
 
+    P: SeriesMatrix
+    n: int
+    period: Expr
+    length: Polynomial
+    increments: Increments
+
     def __init__(self, P: Any, t: Symbol, n: int, period: Any = 2 * pi) -> None:
         matrix = read_matrix(P, as_time(t))
         order = check_order(n)
@@ -88,80 +99,94 @@ class FloquetMatrix:
         self._fill(matrix, order, as_expression(period), length,
                    first_increments(matrix, identity_columns(matrix.shape[0]), order))
 
-    def _fill(self, P: SeriesMatrix, n: int, period: Expr, length: Polynomial, found: Increments) -> None:
-        self._P, self._t, self._n, self._period, self._shape = P, P.t, n, period, P.shape
-        self._length, self._increments = length, found
-        self._powers: list[Polynomial] = [{ONE: fmpq(1)}]  # T**r / r!
-        for r in range(1, n + 1):
-            self._powers.append(multiply(self._powers[-1], {m: c / r for m, c in length.items()}))
-        self._entries: dict[tuple[int, int], Modes] = {}
+    def _fill(self, P: SeriesMatrix, n: int, period: Expr, length: Polynomial, increments: Increments) -> None:
+        for name, value in (("P", P), ("n", n), ("period", period), ("length", length), ("increments", increments)):
+            object.__setattr__(self, name, value)
 
     @property
     def t(self) -> Symbol:
         """The time symbol of ``P``."""
-        return self._t
-
-    @property
-    def n(self) -> int:
-        """The order of the iterate."""
-        return self._n
-
-    @property
-    def period(self) -> Expr:
-        """The period ``T``."""
-        return self._period
+        return self.P.t
 
     @property
     def shape(self) -> tuple[int, int]:
         """(m, m)."""
-        return self._shape
+        return self.P.shape
+
+    @cached_property
+    def turns(self) -> int:
+        """How many whole periods of ``P`` there are in ``T``."""
+        frequencies = {angle[0] for row in self.P.rows for modes in row for _, angle, _ in modes if angle[0]}
+        return max(1, gcd(*(int(turns_of(q, self.length)[ONE].p) for q in frequencies)))
 
     def to_order(self, n: int) -> FloquetMatrix:
         """The same for order ``n``, at the cost of the increments that are new."""
+        return self._with(check_order(n), self.period, self.length)
+
+    def over(self, turns: int, n: int) -> FloquetMatrix:
+        """The same for order ``n`` and the ``turns``-th part of the period."""
+        return self._with(n, self.period / turns, {m: c / turns for m, c in self.length.items()})
+
+    def _with(self, n: int, period: Expr, length: Polynomial) -> FloquetMatrix:
         new = object.__new__(FloquetMatrix)
-        new._fill(self._P, check_order(n), self._period, self._length, self._increments.to_order(n))
+        new._fill(self.P, n, period, length, self.increments.to_order(n))
         return new
 
     # -- exact ---------------------------------------------------------------
 
-    def _entry(self, i: int, j: int) -> Modes:
+    @cached_property
+    def _powers(self) -> list[Polynomial]:
+        """``T**r / r!``."""
+        powers: list[Polynomial] = [{ONE: fmpq(1)}]
+        for r in range(1, self.n + 1):
+            powers.append(multiply(powers[-1], {m: c / r for m, c in self.length.items()}))
+        return powers
+
+    @cached_property
+    def _entries(self) -> dict[tuple[int, int], Modes]:
+        return {}
+
+    def entry(self, i: int, j: int) -> Modes:
+        """Entry ``(i, j)`` in the engine's form."""
         if (i, j) not in self._entries:
             result: Modes = {}
-            for k in range(self._n + 1):
-                algebra.add_modes(result, algebra.frozen(self._increments.whole_turns(k, i, j), self._powers))
+            for k in range(self.n + 1):
+                algebra.add_modes(result, algebra.frozen(self.increments.whole_turns(k, i, j), self._powers))
             self._entries[i, j] = result
         return self._entries[i, j]
 
     def _all(self) -> list[Modes]:
-        rows, columns = self._shape
-        return [self._entry(i, j) for i in range(rows) for j in range(columns)]
+        rows, columns = self.shape
+        return [self.entry(i, j) for i in range(rows) for j in range(columns)]
 
     def _trace(self) -> Modes:
         result: Modes = {}
-        for i in range(self._shape[0]):
-            algebra.add_modes(result, self._entry(i, i))
+        for i in range(self.shape[0]):
+            algebra.add_modes(result, self.entry(i, i))
         return result
 
     @cached_property
-    def _collapsed(self) -> Collapsed:
-        return Collapsed(self._all(), self._t)
+    def collapsed(self) -> Collapsed:
+        """All entries, row by row, as polynomials with coefficients to any precision."""
+        return Collapsed(self._all(), self.t)
 
     @cached_property
-    def _collapsed_trace(self) -> Collapsed:
-        return Collapsed([self._trace()], self._t)
+    def collapsed_trace(self) -> Collapsed:
+        """The trace likewise."""
+        return Collapsed([self._trace()], self.t)
 
     def __getitem__(self, index: tuple[int, int]) -> Expr:
         """One entry, exact."""
-        return write(self._entry(*index), self._t)
+        return write(self.entry(*index), self.t)
 
     def as_matrix(self) -> ImmutableMatrix:
         """The exact matrix, entries expanded: polynomials in the parameters and the period."""
-        rows, columns = self._shape
+        rows, columns = self.shape
         return ImmutableMatrix([[self[i, j] for j in range(columns)] for i in range(rows)])
 
     def trace(self) -> Expr:
         """The exact trace, expanded; for 2 x 2 and determinant 1, ``trace = +-2`` bounds stability ([Neves] (15))."""
-        return write(self._trace(), self._t)
+        return write(self._trace(), self.t)
 
     # -- numbers -------------------------------------------------------------
 
@@ -176,11 +201,11 @@ class FloquetMatrix:
         MissingParameterError
             if a parameter has no value.
         """
-        return number_matrix(self._collapsed.at(values, digits), self._shape, check_digits(digits))
+        return number_matrix(self.collapsed.at(values, digits), self.shape, check_digits(digits))
 
     def trace_at(self, values: Values | None = None, digits: int | None = None) -> Any:
         """The trace of the n-th iterate, float or mpf, every digit asked for correct."""
-        return self._collapsed_trace.at(values, digits)[0]
+        return self.collapsed_trace.at(values, digits)[0]
 
     # -- the truth -----------------------------------------------------------
 
@@ -210,16 +235,17 @@ class FloquetMatrix:
         limit = exact_number(tol, "tol")
         if not ball(limit) > 0:
             raise BadInputError(f"tol must be positive, but it is {tol}.  Use 1e-12, say.")
-        exact = first._numbers(values)
+        exact = first.numbers(values)
         with ctx.workprec(_BOUND_BITS):
-            return first.to_order(smallest_order(*first._at(exact), ball(limit)))
+            return first.to_order(smallest_order(*first.at(exact), ball(limit)))
 
-    def _numbers(self, values: Values | None) -> dict[Any, Any]:
-        return numbers_in(self._P, values, symbols_of(self._length))
+    def numbers(self, values: Values | None) -> dict[Any, Any]:
+        """The values of all parameters as exact numbers or balls, checked."""
+        return numbers_in(self.P, values, symbols_of(self.length))
 
-    def _at(self, exact: Mapping[Any, Any]) -> tuple[Harmonics, Any]:
-        """``P`` and ``T`` in balls of the working precision."""
-        return harmonics(self._P, exact), Point(arb(0), exact).polynomial(self._length)
+    def at(self, exact: Mapping[Any, Any]) -> tuple[Harmonics, Any]:
+        """``P`` and ``T`` at :meth:`numbers`, in balls of the working precision."""
+        return harmonics(self.P, exact), Point(arb(0), exact).polynomial(self.length)
 
     def remainder(self, values: Values | None = None, entrywise: bool = False) -> Any:
         """A rigorous upper bound of ``|Phi(T) - Phi_n(T)|``, the iterate's distance from the truth.
@@ -250,11 +276,11 @@ class FloquetMatrix:
         >>> F.remainder({a: -0.1, b: 0.55}) < 1e-11 < 1 < F.remainder({a: 2.25, b: 0.1})
         True
         """
-        exact = self._numbers(values)
+        exact = self.numbers(values)
         with ctx.workprec(_BOUND_BITS):
-            bound = a_posteriori(*self._at(exact), self._n)
+            bound = a_posteriori(*self.at(exact), self.n)
             if entrywise:
-                return number_matrix([upper_float(x) for x in bound.entries()], self._shape, None)
+                return number_matrix([upper_float(x) for x in bound.entries()], self.shape, None)
             return upper_float(largest_row_sum(bound))
 
     def enclosure(self, values: Values | None = None, digits: int = 15) -> Any:
@@ -288,7 +314,7 @@ class FloquetMatrix:
         >>> print(F.enclosure({a: -0.1, b: 0.55}, digits=20)[0, 1].str(20))
         [18.657723844543385212 +/- 3.39e-21]
         """
-        exact = self._numbers(values)
+        exact = self.numbers(values)
         wanted = check_digits(digits)
         if wanted is None:
             raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
@@ -296,18 +322,12 @@ class FloquetMatrix:
 
     def _true(self, exact: Mapping[Any, Any], digits: int, strict: bool = True) -> Any:
         """The true matrix in balls with these digits, or if not strict with those that wide parameters leave."""
-        return over_period(lambda: self._at(exact), self._turns, digits, is_box(exact), strict)
-
-    @cached_property
-    def _turns(self) -> int:
-        """How many whole periods of ``P`` there are in ``T``."""
-        frequencies = {angle[0] for row in self._P.rows for modes in row for _, angle, _ in modes if angle[0]}
-        return max(1, gcd(*(int(turns_of(q, self._length)[ONE].p) for q in frequencies)))
+        return over_period(lambda: self.at(exact), self.turns, digits, is_box(exact), strict)
 
     def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, list[Any]]:
         """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic forms."""
-        forms = symplectic_forms(self._P, exact)
-        return bool(forms) or (self._shape[0] % 2 == 0 and self._at(exact)[0].reversal is not None), forms
+        forms = symplectic_forms(self.P, exact)
+        return bool(forms) or (self.shape[0] % 2 == 0 and self.at(exact)[0].reversal is not None), forms
 
     def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
         """The eigenvalues of the true Floquet matrix, complex or mpc, sorted by modulus, largest first.
@@ -335,7 +355,7 @@ class FloquetMatrix:
         wanted = check_digits(digits)
         if wanted is None:
             raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
-        exact = self._numbers(values)
+        exact = self.numbers(values)
         paired, _ = self._structure(exact)
         tried = wanted + 5
         while True:
@@ -375,8 +395,8 @@ class FloquetMatrix:
         >>> G.verdict({a: 0.25, b: 0.2, c: 0.01})
         Verdict.UNSTABLE
         """
-        exact = self._numbers(values)
-        constant = constant_matrix(self._P, exact)
+        exact = self.numbers(values)
+        constant = constant_matrix(self.P, exact)
         if constant is not None:
             return by_minimal_polynomial(constant)
         paired, forms = self._structure(exact)
@@ -422,18 +442,18 @@ class FloquetMatrix:
         >>> print(value, error < 1e-15)
         [-0.07955916 -5.26098134] [ True  True]
         """
-        return vectorise(self._collapsed, params, self._shape, bound)
+        return vectorise(self.collapsed, params, self.shape, bound)
 
     def lambdify_trace(self, params: Sequence[Symbol], bound: bool = False) -> Callable[..., Any]:
         """A NumPy function for the trace, right to 10 ulp of the trace itself; otherwise as :meth:`lambdify`."""
-        return vectorise(self._collapsed_trace, params, (), bound)
+        return vectorise(self.collapsed_trace, params, (), bound)
 
     # -- printing ------------------------------------------------------------
 
     def __repr__(self) -> str:
-        return f"<FloquetMatrix of order {self._n}, shape {self._shape[0]} x {self._shape[1]}, period {self._period}>"
+        return f"<FloquetMatrix of order {self.n}, shape {self.shape[0]} x {self.shape[1]}, period {self.period}>"
 
     def _repr_latex_(self) -> str:
-        if self._n > 8:
+        if self.n > 8:
             return f"$\\displaystyle \\text{{{repr(self).strip('<>')}}}$"
         return latex_or_summary(self, sum(len(modes) for modes in self._all()))

@@ -28,13 +28,12 @@ from __future__ import annotations
 from typing import Any
 
 from flint import fmpq
-from sympy import Symbol, pi
+from sympy import pi
 
 from fastpicard import modes as algebra
 from fastpicard.coordinates import Problem
-from fastpicard.evaluate import free_symbols
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.harmonics import harmonics
+from fastpicard.harmonics import reversing_signs
 from fastpicard.increments import to_modes, without_frequencies
 from fastpicard.iteration import PackedIncrements
 from fastpicard.matrix import SeriesMatrix
@@ -46,8 +45,27 @@ Signs = tuple[int, ...]
 
 
 def reversal(P: SeriesMatrix) -> Signs | None:
-    """Signs ``s`` with ``s P(-t) s = -P(t)`` at all values of the parameters, the first of them 1, or None."""
-    return harmonics(P, generic_values(P)).reversal
+    """Signs ``s`` with ``s P(-t) s = -P(t)`` at all values of the parameters, the first of them 1, or None.
+
+    Exact: an entry has an even part unless ``P(t) + P(-t)`` vanishes as a series, an odd one unless their difference
+    does.
+    """
+    parities = {}
+    for i, row in enumerate(P.rows):
+        for j, modes in enumerate(row):
+            if modes:
+                back = _backwards(modes)
+                parities[i, j] = bool(algebra.total(modes, back)), bool(algebra.total(modes, algebra.negative(back)))
+    return reversing_signs(P.shape[0], parities)
+
+
+def _backwards(modes: Modes) -> Modes:
+    """A series without powers of time at ``-t``."""
+    result: Modes = {}
+    for (kind, (frequency, phase), monomial), f in modes.items():
+        turned, angle = orient((tuple((m, -c) for m, c in frequency), phase))
+        algebra.add_reflected(result, kind, turned, angle, monomial, f)
+    return result
 
 
 def pairs(P: SeriesMatrix) -> tuple[bool, Any]:
@@ -59,15 +77,9 @@ def pairs(P: SeriesMatrix) -> tuple[bool, Any]:
     return bool(forms) or P.shape[0] % 2 == 0 and reversal(P) is not None, forms[0] if forms else None
 
 
-def generic_values(P: SeriesMatrix) -> dict[Symbol, Any]:
-    """Numbers for all parameters at which nothing vanishes that does not vanish identically, in practice."""
-    symbols = sorted(set().union(*(free_symbols(modes) for row in P.rows for modes in row)), key=str)
-    return {symbol: fmpq(1009 + 2 * k * k, 997 + k) for k, symbol in enumerate(symbols)}
-
-
 def half_period(F: FloquetMatrix) -> list[list[Modes]]:
     """The n-th iterate at half the period, exactly: polynomials in the parameters, as constants."""
-    half = {m: c / 2 for m, c in F._length.items()}
+    half = {m: c / 2 for m, c in F.length.items()}
     powers: list[Polynomial] = [{ONE: fmpq(1)}]  # (T/2)**r / r!
     for r in range(1, F.n + 1):
         powers.append(multiply(powers[-1], {m: c / r for m, c in half.items()}))
@@ -83,14 +95,14 @@ def _entry(F: FloquetMatrix, i: int, j: int, powers: list[Polynomial]) -> Modes:
 
 def _half_turns(F: FloquetMatrix, k: int, i: int, j: int) -> Modes:
     """An entry of an increment after a time in which every angle makes half turns: powers of that time."""
-    found = F._increments
+    found = F.increments
     if isinstance(found, PackedIncrements):
         problem = found.problem
         entry = without_frequencies(problem, found.levels[k].columns[j][i], _unit_turns(F, problem))
         return to_modes(problem, [entry])
     modes: Modes = {}
     for (kind, (frequency, phase), monomial), f in found.entry(k, i, j).items():
-        turns = multiply(multiply(algebra.as_polynomial(frequency), F._length), _PER_TURN)
+        turns = multiply(multiply(algebra.as_polynomial(frequency), F.length), _PER_TURN)
         turned, angle = orient(((), phase))
         algebra.add_reflected(modes, kind, turned, angle, monomial, -f if turns and int(turns[ONE].p) % 2 else f)
     return modes
@@ -102,5 +114,5 @@ _PER_TURN: Polynomial = {((generator(pi), -1),): fmpq(1, 2)}
 def _unit_turns(F: FloquetMatrix, problem: Problem) -> int:
     """How many whole turns the unit of frequency makes in the period; every frequency is a multiple of it."""
     monomial, rate = problem.coordinates.unit
-    turns = multiply(multiply({monomial: rate}, F._length), _PER_TURN)
+    turns = multiply(multiply({monomial: rate}, F.length), _PER_TURN)
     return int(turns[ONE].p) if list(turns) == [ONE] else 0

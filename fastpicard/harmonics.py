@@ -69,18 +69,7 @@ class Harmonics:
 
         Then ``Phi(-t) = s Phi(t) s``: the second half of a period is the first one mirrored.
         """
-        links = [(i, j, *_parities(waves)) for (i, j), waves in self.waves.items()]
-        if any(even and odd or i == j and even for i, j, even, odd in links):
-            return None
-        signs: dict[int, int] = {}
-        while len(signs) < self.size:
-            signs[min(set(range(self.size)) - set(signs))] = 1
-            while new := {k: (-1 if even else 1) * signs[m] for i, j, even, _ in links for k, m in ((i, j), (j, i))
-                          if m in signs and k not in signs}:
-                signs.update(new)
-        if any(signs[i] * signs[j] != (-1 if even else 1) for i, j, even, _ in links):
-            return None
-        return tuple(signs[i] for i in range(self.size))
+        return reversing_signs(self.size, {place: _parities(waves) for place, waves in self.waves.items()})
 
     def shifted(self, start: Any) -> Harmonics:
         """``P(start + t)``."""
@@ -91,6 +80,22 @@ class Harmonics:
 
         return Harmonics(self.size, {place: [turned(wave) if wave[0] != 0 else wave for wave in waves]
                                      for place, waves in self.waves.items()})
+
+
+def reversing_signs(size: int, parities: Mapping[Place, tuple[bool, bool]]) -> tuple[int, ...] | None:
+    """Signs ``s_i``, the first of them 1, that reverse time, if entry ``(i, j)`` has an even part, an odd one."""
+    links = [(i, j, even, odd) for (i, j), (even, odd) in parities.items()]
+    if any(even and odd or i == j and even for i, j, even, odd in links):
+        return None
+    signs: dict[int, int] = {}
+    while len(signs) < size:
+        signs[min(set(range(size)) - set(signs))] = 1
+        while new := {k: (-1 if even else 1) * signs[m] for i, j, even, _ in links for k, m in ((i, j), (j, i))
+                      if m in signs and k not in signs}:
+            signs.update(new)
+    if any(signs[i] * signs[j] != (-1 if even else 1) for i, j, even, _ in links):
+        return None
+    return tuple(signs[i] for i in range(size))
 
 
 def _amplitude(c: Any, s: Any) -> Any:

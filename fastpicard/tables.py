@@ -69,10 +69,10 @@ def tabulate(F: FloquetMatrix, box: Values | None, digits: int = 15) -> FloquetM
     if not isinstance(F, FloquetMatrix) or wanted is None:
         raise BadTypeError(f"a table is made of a FloquetMatrix for a number of digits, but these are {F!r} and "
                            f"{digits!r}.  Use tabulate(F, {{a: (0, 1)}}, digits=15).")
-    table = Table(F, F._numbers(box), wanted)
+    table = Table(F, F.numbers(box), wanted)
     new = object.__new__(Tabulated)
-    new._fill(F._P, F.n, F.period, F._length, F._increments)
-    new._table = table
+    new._fill(F.P, F.n, F.period, F.length, F.increments)
+    object.__setattr__(new, "_table", table)
     return new
 
 
@@ -101,19 +101,19 @@ class Table:
     """
 
     def __init__(self, F: FloquetMatrix, box: Mapping[Any, Any], digits: int) -> None:
-        self.turns, self.signs, self.digits = F._turns, reversal(F._P), digits
-        self.part = _part(F, 0, self.turns)
+        self.turns, self.signs, self.digits = F.turns, reversal(F.P), digits
+        self.part = F.over(F.turns, 0)
         with ctx.workprec(128):
             P, h = self._at(box)
             self.order = a_priori_order(P, h, arb(10) ** -(digits + SPARE_DIGITS))
             growth = largest_row_sum((P.bound * h).exp())
         self.bits = dps_to_prec(digits + SPARE_DIGITS) + 8 + 2 * math.ceil(math.log2(float(growth)))
         with ctx.workprec(self.bits):
-            self._read(_part(F, self.order, self.turns))
+            self._read(F.over(self.turns, self.order))
 
     def _at(self, values: Mapping[Any, Any]) -> Any:
         """``P`` and the time of the table, at numbers."""
-        P, period = self.part._at(values)
+        P, period = self.part.at(values)
         return P, period / 2 if self.signs else period
 
     def _read(self, F: FloquetMatrix) -> None:
@@ -158,13 +158,6 @@ class Table:
             X = P.bound * abs(h)
             bound = X ** (n + 1) / arb.fac_ui(n + 1) * (one + (X.exp() - one) / (n + 2))
             return arb_mat(size, size, [arb(0, x.upper()) for x in bound.entries()])
-
-
-def _part(F: FloquetMatrix, n: int, turns: int) -> FloquetMatrix:
-    """The iterate of order ``n`` over a part of the period."""
-    part = object.__new__(FloquetMatrix)
-    part._fill(F._P, n, F.period / turns, {m: c / turns for m, c in F._length.items()}, F._increments.to_order(n))
-    return part
 
 
 def _powers(x: Any, top: int) -> list[Any]:

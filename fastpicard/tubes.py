@@ -148,7 +148,7 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     if chart.F.shape != (2, 2) or not rule.half or any(axis.power != 1 for axis in chart.axes):
         raise BadInputError("tubes are drawn of y'' + (a + q(t; b)) y = 0 with q even in t and whole powers of both "
                             "parameters, and this equation is not of that kind.  Use certify.")
-    slope = chart.F._P.as_matrix().diff(chart.axes[0].symbol)
+    slope = chart.F.P.as_matrix().diff(chart.axes[0].symbol)
     if slope != Matrix([[0, 0], [-1, 0]]):
         name = chart.axes[0].symbol
         raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} "

@@ -102,7 +102,7 @@ def test_order_120_needs_balls_where_terms_exceed_the_sum_by_seventeen_digits():
     F = FloquetMatrix(MATHIEU.subs(b, a / 10), t, 120)
     trace = F.trace()
     x = np.array([1e-3, 0.5, 4.0, 20.0, 45.0, 60.0, 100.0, 1e3, 1e4, -45.0, -1e4])
-    evaluator = Evaluator(F._collapsed_trace, (a,))
+    evaluator = Evaluator(F.collapsed_trace, (a,))
     values, bounds, route = evaluator([x])
 
     assert BALL in route and PAIR in route and FLOAT in route
@@ -126,7 +126,7 @@ def test_periods_from_a_microsecond_to_a_million(length):
         with mpmath.workdps(200):
             assert abs(mpmath.mpf(float(value)) - truth) <= min(bound, 10 * np.spacing(largest))
         assert error(float(single), truth) <= 1.01 * UNIT
-    route = Evaluator(F._collapsed, (a, b))([np.array([x, x / 3]), np.array([y, -y])])[2]
+    route = Evaluator(F.collapsed, (a, b))([np.array([x, x / 3]), np.array([y, -y])])[2]
     assert (route == PAIR).all()
 
 

@@ -71,10 +71,10 @@ def pairs(left, right):
 @given(st.sampled_from(SYSTEMS), numbers_drawn, numbers_drawn, st.integers(1, 40), st.integers(8, 60))
 def test_a_step_that_ends_too_early_pays_with_its_radius(F, x, y, orders, bits):
     """The defect sees what is left out, by few orders as by few bits: one step over a quarter of the period."""
-    values = F._numbers({a: x, b: y, c: fmpq(1, 7)})
+    values = F.numbers({a: x, b: y, c: fmpq(1, 7)})
 
     with ctx.workprec(200), pytest.MonkeyPatch.context() as patch:
-        P, period = F._at(values)
+        P, period = F.at(values)
         fine, rough = (enclosure._step(P.shifted(period / 7), period / 4, [0] * P.size, n) for n in (200, bits))
         patch.setattr(enclosure, "MOST_ORDERS", orders)
         short = enclosure._step(P.shifted(period / 7), period / 4, [0] * P.size, 200)
@@ -87,7 +87,7 @@ def test_a_step_that_ends_too_early_pays_with_its_radius(F, x, y, orders, bits):
 def test_an_enclosure_agrees_with_taylors_method_of_the_tests(F, x, y):
     """A route that shares no code: 25 digits."""
     values = {a: Rational(x), b: Rational(y), c: Rational(1, 7)}
-    truth = true_fundamental_matrix(F._P.as_matrix().subs(values), t, 0, F.period, 25)
+    truth = true_fundamental_matrix(F.P.as_matrix().subs(values), t, 0, F.period, 25)
     found = F.enclosure(values, 20)
 
     size = F.shape[0]

@@ -21,7 +21,7 @@ GENERAL = Matrix(
 
 def error_norm(F, values, digits=40):
     """The largest row sum of |Phi - Phi_n|, by Taylor's method of the test's own."""
-    truth = true_fundamental_matrix(F._P.as_matrix().subs(values), t, 0, F.period, digits)
+    truth = true_fundamental_matrix(F.P.as_matrix().subs(values), t, 0, F.period, digits)
     with mpmath.workdps(digits):
         return mpmath.mnorm(truth - F.evaluate(values, digits), mpmath.inf)
 

@@ -31,7 +31,7 @@ DIGITS = 6
 
 def of_system(name, values):
     """The values of the parameters that occur."""
-    return {s: values[s] for s in SYSTEMS[name]._P.as_matrix().free_symbols - {t}}
+    return {s: values[s] for s in SYSTEMS[name].P.as_matrix().free_symbols - {t}}
 
 
 @cache
@@ -69,7 +69,7 @@ def test_a_table_has_no_edge(name, x, y):
     values = of_system(name, {a: x, b: y, c: 1 + y / 6, w: 2 + x / 6})
     table = tabulated(name)._table
     with ctx.workprec(table.bits):
-        found = table.over_period(SYSTEMS[name]._numbers(values))
+        found = table.over_period(SYSTEMS[name].numbers(values))
 
     true = SYSTEMS[name].enclosure(values, 25)
     assert found is None or all(wide.contains(narrow.mid()) for wide, narrow in pairs(found, true))

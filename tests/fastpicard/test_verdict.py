@@ -54,7 +54,7 @@ def test_rods_upside_down_have_their_class_from_the_full_matrix(case):
     """Up to six coupled rods, without normal modes: stable where the reference says so, next to the margin too."""
     count = int(case["N"])
     F = RODS.setdefault(count, rods(count))
-    names = {s.name: s for s in F._P.as_matrix().free_symbols}
+    names = {s.name: s for s in F.P.as_matrix().free_symbols}
     verdict = F.verdict({names["h"]: read(case["h"]), names["v"]: read(case["v"])})
 
     assert verdict.name.lower() == case["class"]
@@ -188,7 +188,7 @@ def test_the_symplectic_form_is_found_where_there_is_one():
     damped = second - Matrix([[zero, zero], [zero, one / 7]])
 
     for P, exists in ((second, True), (hamiltonian, True), (damped, False)):
-        forms = symplectic_forms(FloquetMatrix(P, t, 0)._P, {})
+        forms = symplectic_forms(FloquetMatrix(P, t, 0).P, {})
         assert bool(forms) == exists
         for form in forms[:1]:
             W = Matrix(4, 4, [Rational(int(x.p), int(x.q)) for x in form.entries()])
