@@ -65,8 +65,8 @@ class CompiledChain:
     model : None, ``"bobs"`` or ``"rods"``; None takes the least that will do, and ``chain.model`` says which
 
     Floats are taken as the exact numbers they are, SymPy numbers and fractions too.  Accelerations in float64 round:
-    within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart; at unlucky states, one in 200, where joints pull
-    against each other and the rounding of their sines decides, up to 7e-14 was seen: give mpmath numbers there.
+    within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart; at one random state of such chains in 200, where
+    joints pull against each other, more, and up to 3e-13 was seen: give mpmath numbers there.
 
     Raises
     ------
