@@ -304,7 +304,8 @@ class FloquetMatrix:
         -----
         Independent of ``n``: the equation is integrated by Taylor polynomials whose defect is bounded, over half a
         period where ``P`` allows; steps, orders and precision follow from the digits.  Some 2.5 ms a point for
-        Mathieu's equation and 30 digits, 0.1 s at ``a = 4000``.  For thousands of points see :func:`~fastpicard.tabulate`.
+        Mathieu's equation and 30 digits, 0.1 s at ``a = 4000``.  For thousands of points see
+        :func:`~fastpicard.tabulate`.
 
         Examples
         --------
