@@ -4,18 +4,11 @@ import flint
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
 from sympy import Rational, pi
 
 from lagrangian import CompiledChain, QuantityError, SceneError, simulate
 from lagrangian.floats import split
 from lagrangian.stepper import move
-
-# Each example solves dense equations at 300 digits.
-measured = settings(max_examples=min(100, settings.default.max_examples), deadline=None)
-# The same chains on every run: of others a few in ten thousand lose more, see CompiledChain.
-repeated = settings(measured, derandomize=True, database=None)
-seeds = st.integers(0, 10**9)
 
 
 def arb(x):
@@ -95,14 +88,16 @@ def test_accelerations_are_within_4e15_of_300_digits(n, kind, gravity):
         assert error(many[:, 3], exact) < 4e-15
 
 
-@repeated
-@given(st.integers(1, 12), st.sampled_from(KINDS), seeds)
-def test_accelerations_of_random_hard_chains(n, kind, seed):
-    """The same on random chains, where joints may also happen to pull against each other: one digit less."""
-    m, l, H, R, theta, omega = hard_chain(kind, n, np.random.default_rng(seed))
-    chain = CompiledChain(m, l, H, R)
+def test_one_random_hard_chain_in_a_hundred_loses_a_digit():
+    """A thousand chains, the same on every run, where joints may also happen to pull against each other."""
+    losses = []
+    for seed in range(1000):
+        rng = np.random.default_rng(seed)
+        m, l, H, R, theta, omega = hard_chain(KINDS[seed % len(KINDS)], int(rng.integers(1, 13)), rng)
+        exact = dense(m, l, H, R, 9.81, theta, omega)
+        losses.append(error(CompiledChain(m, l, H, R).acceleration(0, theta, omega), exact))
 
-    assert error(chain.acceleration(0, theta, omega), dense(m, l, H, R, 9.81, theta, omega)) < 4e-14
+    assert np.median(losses) < 2e-16 and np.quantile(losses, 0.99) < 4e-15 and max(losses) < 1e-13
 
 
 @pytest.mark.parametrize("kind", KINDS)
