@@ -36,8 +36,8 @@ from .constants import (
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .lanes import LANES, accelerate_lanes
 from .machine import has_numba, machine
+from .quantities import quantity, refuse_text
 from .recursion import accelerate_bobs, accelerate_rods
-from .scene import quantity, refuse_text
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
 

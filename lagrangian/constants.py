@@ -18,7 +18,7 @@ from sympy import Symbol, nan, oo, zoo
 
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
-from .scene import quantity, refuse_text
+from .quantities import quantity, refuse_text
 
 __all__ = ["NAMES", "check_joints", "checked", "column", "joint_constants", "products", "rod_row", "substitution",
            "to_float", "to_floats"]

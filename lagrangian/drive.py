@@ -37,7 +37,7 @@ from .errors import (
     NotPeriodicError,
     QuantityError,
 )
-from .scene import quantity
+from .quantities import quantity
 
 
 def frequency(omega0: Any, t: Any) -> Any:

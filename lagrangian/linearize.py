@@ -49,7 +49,8 @@ from .errors import (
     QuantityError,
     SceneError,
 )
-from .scene import column, quantity, refuse_text
+from .quantities import quantity, refuse_text
+from .scene import column
 
 __all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
 

@@ -42,7 +42,7 @@ from .drive import frequency, in_scales, modes_of, natural_scales
 from .energy import Scene
 from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError
 from .linearize import LinearEquations
-from .scene import refuse_text
+from .quantities import refuse_text
 
 __all__ = ["NormalModes", "normal_modes"]
 

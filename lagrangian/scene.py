@@ -12,38 +12,28 @@ near joint, and its radius of gyration ``R`` about that joint, so that its momen
 ``m R**2`` (the article's text says ``m R**2 / 2``; its In[16] is right).  By the parallel-axis theorem the
 moment about the centre of mass is ``m (R**2 - H**2)``, which is why ``R >= |H|``.
 
-Every quantity is exact.  A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is
-3602879701896397/36028797018963968; write ``Rational(1, 10)`` where the decimal is meant.
+Every quantity is exact (:mod:`lagrangian.quantities`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from decimal import Decimal
 from functools import cached_property
-from numbers import Integral, Rational as AnyRational, Real
 from typing import Any
 
-import mpmath
 from sympy import (
     Abs,
     Derivative,
     DiracDelta,
     Dummy,
-    Expr,
-    Float,
     Function,
     Heaviside,
-    I,
     ImmutableDenseMatrix,
-    Integer,
     Max,
     Min,
     Mod,
     Piecewise,
-    Rational,
     S,
     Symbol,
     arg,
@@ -54,73 +44,18 @@ from sympy import (
     frac,
     im,
     latex,
-    nan,
-    oo,
     re,
     sign,
     sqrt,
-    zoo,
 )
 from sympy.core.function import AppliedUndef
 
-from .errors import DriveError, NotAQuantityError, QuantityError, SceneError, TextError
+from .errors import DriveError, NotAQuantityError, QuantityError, SceneError
+from .quantities import quantity, refuse_text
 
 __all__ = ["Arrangement", "Rod", "Support"]
 
 _ROUGH = (Abs, Heaviside, DiracDelta, Max, Min, Mod, Piecewise, ceiling, floor, frac, sign, re, im, arg, conjugate)
-
-
-def refuse_text(value: Any, name: str) -> None:
-    """Raise :class:`TextError` if ``value`` is text: SymPy would evaluate it."""
-    if isinstance(value, (str, bytes, bytearray)):
-        raise TextError(
-            f"{name} is the text {value!r}, and text is never evaluated: give a number, or a SymPy expression "
-            f"such as Symbol('m') or Rational(1, 2)."
-        )
-
-
-def quantity(value: Any, name: str) -> Any:
-    """``value`` as an exact SymPy expression: finite, real, commutative; ``name`` is used in messages.
-
-    Raises :class:`TextError`, :class:`NotAQuantityError` or :class:`QuantityError`.
-    """
-    refuse_text(value, name)
-    expression = _exact(value, name)
-    if expression.has(nan, oo, -oo, zoo):
-        raise QuantityError(f"{name} is {expression}, which is not finite: give a finite number or a Symbol.")
-    if expression.is_real is False or (expression.is_number and expression.has(I) and not expression.is_real):
-        raise QuantityError(f"{name} is {expression}, which is not real: give a real number or a Symbol.")
-    return expression
-
-
-def _exact(value: Any, name: str) -> Any:
-    """Numbers of every kind as exact rationals; SymPy scalars with their floats made exact."""
-    if isinstance(value, Expr) and value.is_commutative and not getattr(value, "is_Matrix", False):
-        return value.xreplace({x: Rational(*_ratio(x)) for x in value.atoms(Float) if x.is_finite})
-    if isinstance(value, bool):
-        raise NotAQuantityError(f"{name} is {value}, a truth value: give a number or a SymPy expression.")
-    if isinstance(value, Integral):
-        return Integer(int(value))
-    if isinstance(value, AnyRational):
-        return Rational(int(value.numerator), int(value.denominator))
-    if isinstance(value, (Decimal, Real, mpmath.mpf)):
-        if not mpmath.isfinite(value) if isinstance(value, mpmath.mpf) else not math.isfinite(value):
-            raise QuantityError(f"{name} is {value}, which is not finite: give a finite number or a Symbol.")
-        return Rational(*_ratio(value))
-    raise NotAQuantityError(
-        f"{name} is {value!r} of type {type(value).__name__}, not a scalar: give a real number or a commutative "
-        f"SymPy expression."
-    )
-
-
-def _ratio(value: Any) -> tuple[int, int]:
-    """A finite binary or decimal number as an exact fraction."""
-    if not isinstance(value, (Float, mpmath.mpf)):
-        numerator, denominator = value.as_integer_ratio()
-        return int(numerator), int(denominator)
-    negative, mantissa, exponent, _ = value._mpf_
-    signed = -int(mantissa) if negative else int(mantissa)
-    return signed * 2 ** max(int(exponent), 0), 2 ** max(-int(exponent), 0)
 
 
 def _positive(value: Any, name: str) -> Any:

@@ -22,7 +22,7 @@ from sympy.core.function import AppliedUndef
 from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
-from .scene import quantity, refuse_text
+from .quantities import quantity, refuse_text
 
 __all__ = ["Shaking", "shaking_of"]
 

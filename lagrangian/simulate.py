@@ -26,7 +26,7 @@ from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .equations import EquationsOfMotion
 from .errors import NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
-from .scene import quantity, refuse_text
+from .quantities import quantity, refuse_text
 from .solvers import SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .stepper import TURN
 from .swings import swing

@@ -1,0 +1,72 @@
+"""What a user gives as an exact number or expression: finite, real, a scalar, and never text.
+
+A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is 3602879701896397/36028797018963968; write
+``Rational(1, 10)`` where the decimal is meant.
+"""
+
+from __future__ import annotations
+
+import math
+from decimal import Decimal
+from numbers import Integral, Rational as AnyRational, Real
+from typing import Any
+
+import mpmath
+from sympy import Expr, Float, I, Integer, Rational, nan, oo, zoo
+
+from .errors import NotAQuantityError, QuantityError, TextError
+
+__all__ = ["quantity", "refuse_text"]
+
+
+def refuse_text(value: Any, name: str) -> None:
+    """Raise :class:`TextError` if ``value`` is text: SymPy would evaluate it."""
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TextError(
+            f"{name} is the text {value!r}, and text is never evaluated: give a number, or a SymPy expression "
+            f"such as Symbol('m') or Rational(1, 2)."
+        )
+
+
+def quantity(value: Any, name: str) -> Any:
+    """``value`` as an exact SymPy expression: finite, real, commutative; ``name`` is used in messages.
+
+    Raises :class:`TextError`, :class:`NotAQuantityError` or :class:`QuantityError`.
+    """
+    refuse_text(value, name)
+    expression = _exact(value, name)
+    if expression.has(nan, oo, -oo, zoo):
+        raise QuantityError(f"{name} is {expression}, which is not finite: give a finite number or a Symbol.")
+    if expression.is_real is False or (expression.is_number and expression.has(I) and not expression.is_real):
+        raise QuantityError(f"{name} is {expression}, which is not real: give a real number or a Symbol.")
+    return expression
+
+
+def _exact(value: Any, name: str) -> Any:
+    """Numbers of every kind as exact rationals; SymPy scalars with their floats made exact."""
+    if isinstance(value, Expr) and value.is_commutative and not getattr(value, "is_Matrix", False):
+        return value.xreplace({x: Rational(*_ratio(x)) for x in value.atoms(Float) if x.is_finite})
+    if isinstance(value, bool):
+        raise NotAQuantityError(f"{name} is {value}, a truth value: give a number or a SymPy expression.")
+    if isinstance(value, Integral):
+        return Integer(int(value))
+    if isinstance(value, AnyRational):
+        return Rational(int(value.numerator), int(value.denominator))
+    if isinstance(value, (Decimal, Real, mpmath.mpf)):
+        if not mpmath.isfinite(value) if isinstance(value, mpmath.mpf) else not math.isfinite(value):
+            raise QuantityError(f"{name} is {value}, which is not finite: give a finite number or a Symbol.")
+        return Rational(*_ratio(value))
+    raise NotAQuantityError(
+        f"{name} is {value!r} of type {type(value).__name__}, not a scalar: give a real number or a commutative "
+        f"SymPy expression."
+    )
+
+
+def _ratio(value: Any) -> tuple[int, int]:
+    """A finite binary or decimal number as an exact fraction."""
+    if not isinstance(value, (Float, mpmath.mpf)):
+        numerator, denominator = value.as_integer_ratio()
+        return int(numerator), int(denominator)
+    negative, mantissa, exponent, _ = value._mpf_
+    signed = -int(mantissa) if negative else int(mantissa)
+    return signed * 2 ** max(int(exponent), 0), 2 ** max(-int(exponent), 0)
