@@ -49,6 +49,13 @@ def tabulate(F: FloquetMatrix, box: Values | None, digits: int = 15) -> FloquetM
     -------
     FloquetMatrix of the same order, whose ``enclosure``, ``multipliers`` and ``verdict`` use the table.
 
+    Raises
+    ------
+    BadTypeError
+        if ``F`` is no FloquetMatrix, or ``digits`` no positive integer.
+    MissingParameterError
+        if a parameter is not in the box.
+
     Notes
     -----
     Speed and accuracy: the enclosures are as good, and as rigorous, as without.  For Mathieu's equation, 30 digits and
