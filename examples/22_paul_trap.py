@@ -32,7 +32,7 @@ def main() -> None:
     curves = tubes(F, (a, -0.5, 0.6), (b, 0, 0.9))
     print(curves)
     near.with_tubes(curves).plot(axes[1], xlabel="a", ylabel="b = q/2",
-                                 title="The trap works below q = 0.908: tubes of radius 1e-20")
+                                 title="The trap works below q = 0.908")
     axes[1].plot(0, float(roots[0][1].value), "o", color="tab:red")
     axes[1].annotate("q = 0.908046...", (0, float(roots[0][1].value)), xytext=(0.12, 0.62), color="tab:red",
                      arrowprops={"arrowstyle": "->", "color": "tab:red"})
