@@ -184,10 +184,9 @@ def test_sums_of_rho_from_traces(multipliers):
 
 @settings(max_examples=50)
 @given(st.lists(st.fractions(-5, 5, max_denominator=7), min_size=1, max_size=3))
-def test_hermites_second_matrix_is_the_congruence(sigma):
-    """G = V' diag(sigma (4 - sigma)) V with V_ij = sigma_i**j, exactly."""
+def test_hermites_second_matrices_are_congruences(sigma):
+    """G = V' diag(g) V with V_ij = sigma_i**j and g = 4 - sigma**2, or g = sigma (4 - sigma), exactly."""
     n = len(sigma)
     sums = [sum(x**k for x in sigma) for k in range(1, 2 * n + 1)]
-    expected = [[sum(x ** (j + k) * x * (4 - x) for x in sigma) for k in range(n)] for j in range(n)]
-
-    assert hermite_from_zero(sums, n) == expected
+    for g, found in ((lambda x: 4 - x**2, hermite(sums, n, True)), (lambda x: x * (4 - x), hermite_from_zero(sums, n))):
+        assert found == [[sum(x ** (j + k) * g(x) for x in sigma) for k in range(n)] for j in range(n)]
