@@ -1,11 +1,11 @@
 """Chains of rods against SymPy with SciPy, PyDy, heyoka, MuJoCo, Pinocchio and mpmath, in one run, as ratios.
 
-    python benchmarks/chains.py [rhs] [many] [motion] [digits [--long]] [start]
+    python benchmarks/chains.py [rhs] [many] [motion] [digits [--until=2.8]] [start]
 
 A peer that is not installed is left out with a sentence (pip install heyoka mujoco pin pydy cython).  Every time is
 the least of several repeats on one core; the machine decides the times, the ratios are what matters.  Every peer's
-answer is compared with ours before its time is printed.  With --long the 50 digits are those of 10 s, for which
-mpmath.odefun takes most of an hour.
+answer is compared with ours before its time is printed.  The 50 digits are those of a tenth of a second, or of as
+many as are given: 2.8 take mpmath.odefun a quarter of an hour.
 """
 
 # ruff: noqa: B023  (every function here is timed before its loop goes on)
@@ -224,7 +224,7 @@ def motions() -> None:
 
 
 def digits() -> None:
-    end = Integer(10) if "--long" in sys.argv else Rational(1, 10)
+    end = next((Rational(x.partition("=")[2]) for x in sys.argv if x.startswith("--until=")), Rational(1, 10))
     print(f"\n50 digits, double pendulum from 2 rad, {float(end)} s of motion: processor time")
     before = time.process_time()
     mine = integrate_digits(swinging(2), [Integer(2)] * 2, [Integer(0)] * 2, [Integer(0), end], 50)[0][-1]
@@ -264,8 +264,9 @@ chain = CompiledChain([1.0] * 5, [1.0] * 5, [0.5] * 5, [0.6] * 5, upright=False)
 loaded = time.perf_counter()
 chain.acceleration(0, [0.1] * 5, [0.0] * 5); first = time.perf_counter()
 simulate(chain, [2] * 5, [0] * 5, [0, 1]); second = time.perf_counter()
-print(f"{loaded - start:.2f} s to import, {first - loaded:.2f} s to the first acceleration, "
-      f"{second - first:.2f} s to the first motion")
+simulate(chain, [2] * 5, [0] * 5, [0, 1], digits=28); third = time.perf_counter()
+print(f"{loaded - start:.2f} s to import, {first - loaded:.2f} s more to the first acceleration, "
+      f"{second - first:.2f} s more to the first motion, {third - second:.2f} s more to one in double-double")
 """
 
 
@@ -282,5 +283,5 @@ def start() -> None:
 PARTS = {"rhs": right_hand_sides, "many": many_chains, "motion": motions, "digits": digits, "start": start}
 
 if __name__ == "__main__":
-    for name in [x for x in sys.argv[1:] if x != "--long"] or PARTS:
+    for name in [x for x in sys.argv[1:] if not x.startswith("--")] or PARTS:
         PARTS[name]()

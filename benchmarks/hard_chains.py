@@ -15,7 +15,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from lagrangian import CompiledChain
-from tests.extremes.test_chains import KINDS, dense, error, hard_chain
+from tests.extremes.test_chains import KINDS, dense, error, hard_chain, moved
 
 
 def main() -> None:
@@ -33,17 +33,6 @@ def main() -> None:
           f"{(losses > 4e-14).sum()} above 4e-14; the worst ones:")
     for loss, kind, n, chain, exact in sorted(found, key=lambda x: -x[0])[:8]:
         print(f"  {loss:.1e}, {n} rods, {kind}; the data are worth {moved(chain, exact):.1e}")
-
-
-def moved(chain: tuple[np.ndarray, ...], exact: list[object]) -> float:
-    """The largest change of the exact answer over eight ways to go to next floats."""
-    largest = 0.0
-    for turn in range(8):
-        up = np.where(np.random.default_rng(turn).integers(0, 2, (6, len(chain[0]))), np.inf, -np.inf)
-        m, l, H, R, theta, omega = np.nextafter(chain, up)
-        answer = dense(m, l, H, np.maximum(R, H), 9.81, theta, omega)
-        largest = max(largest, error([float(x.mid()) for x in answer], exact))
-    return largest
 
 
 if __name__ == "__main__":

