@@ -16,6 +16,7 @@ from hypothesis import assume, given, strategies as st
 from fastpicard import mathieu
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.mathieu import mathieu_a, mathieu_a_enclosure, mathieu_b, mathieu_b_enclosure
+from fastpicard.mathieu_matrices import Section
 
 CASES = json.loads((Path(__file__).parent / "cases" / "mathieu_characteristic.json").read_text())["cases"]
 VALUES = [case for case in CASES if "value" in case]
@@ -193,6 +194,18 @@ def test_branches_that_scipy_confuses_are_right(kind, r, q, scipy_says):
         assert abs(continued_fraction(kind, r, mpmath.mpf(q), value)) < mpmath.mpf(10) ** -25
 
 
+@pytest.mark.parametrize("q", [400, 10000])
+def test_index_is_right_where_neither_expansion_holds(q):
+    """Around r = 4 sqrt(q)/pi, where large q goes over into large r, against Hill's matrix; both kinds, all r."""
+    spectra = hill_spectrum(q, False, 200), hill_spectrum(q, True, 200)
+    root = int(q**0.5)
+    for r in range(root // 2, 2 * root, 1 + root // 10):
+        for kind in "ab":
+            place = r - 1 + (kind == "a") if r % 2 else r - (kind == "b")
+            expected = spectra[r % 2][place]
+            assert abs(float(CHARACTERISTIC[kind](r, q)) - expected) < 1e-9 * q
+
+
 @pytest.mark.parametrize("kind, r, q", [("a", 0, 1), ("a", 1, -5), ("b", 2, 10), ("b", 7, 3), ("a", 8, 25)])
 def test_solution_by_taylor_steps_is_periodic_where_the_number_says(kind, r, q):
     """At a_r the even solution has slope 0 at pi/2 (r even) or value 0; at b_r the odd one value 0 or slope 0."""
@@ -231,8 +244,8 @@ def test_count_of_a_short_section_is_undecided_or_that_of_the_infinite_matrix(ki
         near = abs(x - ENCLOSURE[kind](r, q, digits=80)) < 1
         rows = matrix.index + extra
         for peak in range(rows - 1):
-            section = mathieu._Section(matrix.diagonal(ball_of(q), rows + 1), matrix.couplings(ball_of(q), rows + 1),
-                                       peak, abs(ball_of(q)))
+            section = Section(matrix.diagonal(ball_of(q), rows + 1), matrix.couplings(ball_of(q), rows + 1),
+                              peak, abs(ball_of(q)))
             assert not near or section.count_below(x) in (None, matrix.index + (side > 0))
 
 
@@ -240,7 +253,7 @@ def test_long_section_decides_on_both_sides_of_a_number():
     """Not everything is undecided: forty rows see 60 decimals of b_4(7)."""
     matrix = mathieu._matrix("b", 4)
     with ctx.workprec(400):
-        section = mathieu._Section(matrix.diagonal(arb(7), 41), matrix.couplings(arb(7), 41), 1, arb(7))
+        section = Section(matrix.diagonal(arb(7), 41), matrix.couplings(arb(7), 41), 1, arb(7))
         x = mathieu_b_enclosure(4, 7, digits=80).mid()
         assert [section.count_below(x + side * arb(10) ** -60) for side in (-1, 1)] == [1, 2]
 
@@ -249,7 +262,7 @@ def test_section_is_undecided_above_its_tail():
     """Two rows, x = 60 above 1, 9, 25, 49: the tail is not positive, so its eigenvalues must not be left uncounted."""
     matrix = mathieu._matrix("a", 1)
     q = arb(0.125)
-    section = mathieu._Section(matrix.diagonal(q, 3), matrix.couplings(q, 3), 0, q)
+    section = Section(matrix.diagonal(q, 3), matrix.couplings(q, 3), 0, q)
 
     assert section.count_below(arb(60)) is None
     assert section.count_below(arb(5)) == 1
@@ -258,8 +271,8 @@ def test_section_is_undecided_above_its_tail():
 @pytest.mark.parametrize("shift", [-1e-9, 1e-9, -5.0, 5.0])
 def test_wrong_guess_is_never_certified(monkeypatch, shift):
     """Newton led astray, by a little or to a neighbour, ends in a refusal and not in a number."""
-    refine = mathieu._Section.refine
-    monkeypatch.setattr(mathieu._Section, "refine", lambda *args: refine(*args) + arb(shift))
+    refine = Section.refine
+    monkeypatch.setattr(Section, "refine", lambda *args: refine(*args) + arb(shift))
 
     with pytest.raises(BadInputError, match="not isolated"):
         mathieu_a(4, 3)
