@@ -88,8 +88,9 @@ def _sympy_number(value: Expr, what: str) -> Any:
     return value
 
 
-def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol) -> dict[Symbol, Any]:
-    """The values of the parameters that occur, exactly.
+def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
+                 number: Callable[[Any, str], Any] | None = None) -> dict[Symbol, Any]:
+    """The values of the parameters that occur, each read by ``number``, as a rule :func:`exact_number`.
 
     Raises
     ------
@@ -114,7 +115,7 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol) -> 
         names = ", ".join(map(str, missing))
         raise MissingParameterError(f"every parameter needs a value, but {names} has none among {given}.  "
                                     f"Add {names} to the values.")
-    exact = {s: exact_number(value, f"the value of {s}") for s, value in given.items()}
+    exact = {s: (number or exact_number)(value, f"the value of {s}") for s, value in given.items()}
     return {s: exact[s] for s in needed}
 
 

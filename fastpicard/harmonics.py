@@ -149,18 +149,18 @@ def numbers_in(P: SeriesMatrix, values: Values | None, others: Iterable[Any] = (
         if ``lo > hi``.
     """
     needed = set(others).union(*(free_symbols(modes) for row in P.rows for modes in row))
-    if isinstance(values, Mapping):
-        values = {key: _interval(key, value) if isinstance(value, tuple) else value for key, value in values.items()}
-    return exact_values(values, needed, P.t)
+    return exact_values(values, needed, P.t, _number_or_interval)
 
 
-def _interval(name: Any, ends: tuple[Any, ...]) -> Any:
-    if len(ends) != 2:
-        raise BadInputError(f"an interval of {name} is a pair (lo, hi), but it is {ends!r}.  Give two numbers.")
+def _number_or_interval(value: Any, what: str) -> Any:
+    if not isinstance(value, tuple):
+        return exact_number(value, what)
+    if len(value) != 2:
+        raise BadInputError(f"an interval is a pair (lo, hi), but {what} is {value!r}.  Give two numbers.")
     with ctx.workprec(256):
-        lo, hi = (ball(exact_number(end, f"an end of the interval of {name}")) for end in ends)
+        lo, hi = (ball(exact_number(end, f"an end of {what}")) for end in value)
         if lo > hi:
-            raise BadInputError(f"an interval of {name} is a pair (lo, hi) with lo <= hi, but it is {ends!r}.  "
+            raise BadInputError(f"an interval is a pair (lo, hi) with lo <= hi, but {what} is {value!r}.  "
                                 "Exchange the two.")
         return lo.union(hi)
 

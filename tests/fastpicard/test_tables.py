@@ -144,3 +144,9 @@ def test_what_makes_no_table_is_refused(arguments, error):
     """Digits that are no number, an interval upside down, a parameter without one, what is no Floquet matrix."""
     with pytest.raises(error):
         tabulate(*arguments)
+
+
+def test_message_shows_an_interval_as_it_was_typed():
+    """Not as the ball that it becomes."""
+    with pytest.raises(MissingParameterError, match=r"among \{a: \(0, 1/3\)\}"):
+        tabulate(SYSTEMS["Mathieu"], {a: (0, Rational(1, 3))}, 9)
