@@ -153,7 +153,8 @@ def quadrature(expression, variable, lower, upper, digits=30):
 
 def value_by_sympy(expression, substitutions, digits=40):
     """A number through SymPy's ``evalf``, with terms that cancel allowed for."""
-    return sympy.N(expression.subs(substitutions, simultaneous=True), digits, maxn=2000)
+    numbers = {key: sympy.sympify(value) for key, value in substitutions.items()}
+    return sympy.N(expression.xreplace(numbers), digits, maxn=2000)
 
 
 def closeness(left, right):

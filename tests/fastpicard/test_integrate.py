@@ -47,7 +47,7 @@ def test_definite_integrals_add_up(x, lower, upper):
 def test_a_symbolic_limit_may_be_replaced_by_its_value(x, value):
     """Integrating up to u and then putting u = value is integrating up to the value."""
     u = Symbol("u")
-    found = new_integrate(x, (t, t0, u)).subs({u: value, t0: 1})
+    found = new_integrate(x, (t, t0, u)).xreplace({u: value, t0: sympy.Integer(1)})
 
     assert sympy.expand(found - new_integrate(x, (t, 1, value))) == 0
 
