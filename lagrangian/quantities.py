@@ -18,6 +18,8 @@ from .errors import NotAQuantityError, QuantityError, TextError
 
 __all__ = ["quantity", "refuse_text"]
 
+AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
+
 
 def refuse_text(value: Any, name: str) -> None:
     """Raise :class:`TextError` if ``value`` is text: SymPy would evaluate it."""
@@ -52,8 +54,8 @@ def _exact(value: Any, name: str) -> Any:
         return Integer(int(value))
     if isinstance(value, AnyRational):
         return Rational(int(value.numerator), int(value.denominator))
-    if isinstance(value, (Decimal, Real, mpmath.mpf)):
-        if not mpmath.isfinite(value) if isinstance(value, mpmath.mpf) else not math.isfinite(value):
+    if isinstance(value, (Decimal, Real, AnyMpf)):
+        if not mpmath.isfinite(value) if isinstance(value, AnyMpf) else not math.isfinite(value):
             raise QuantityError(f"{name} is {value}, which is not finite: give a finite number or a Symbol.")
         return Rational(*_ratio(value))
     raise NotAQuantityError(
@@ -64,7 +66,7 @@ def _exact(value: Any, name: str) -> Any:
 
 def _ratio(value: Any) -> tuple[int, int]:
     """A finite binary or decimal number as an exact fraction."""
-    if not isinstance(value, (Float, mpmath.mpf)):
+    if not isinstance(value, (Float, AnyMpf)):
         numerator, denominator = value.as_integer_ratio()
         return int(numerator), int(denominator)
     negative, mantissa, exponent, _ = value._mpf_

@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 
+import mpmath
 import pytest
 from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, cos, nan, oo, pi, sqrt, symbols
 
@@ -135,3 +136,14 @@ def test_numbers_of_every_kind_are_exact():
     assert Rod.uniform(0.5, Fraction(1, 3)) == Rod.uniform(Rational(1, 2), Rational(1, 3))
     assert Rod.bob(0.1, 1).mass == Rational(3602879701896397, 36028797018963968)
     assert Support(eta=0.25 * cos(t)).eta == cos(t) / 4
+
+
+def test_mpmath_numbers_are_exact_whatever_context_made_them():
+    """So that a state computed with 40 digits can be given back; what is not finite is refused."""
+    context = mpmath.mp.clone()
+    context.dps = 40
+    third = context.mpf(1) / 3
+
+    assert abs(Support(eta=third).eta - Rational(1, 3)) < Rational(1, 10**40) and Rod.bob(third / third, 1).mass == 1
+    with pytest.raises(QuantityError, match="finite"):
+        Support(eta=context.inf)
