@@ -227,7 +227,7 @@ def digits() -> None:
     end = next((Rational(x.partition("=")[2]) for x in sys.argv if x.startswith("--until=")), Rational(1, 10))
     print(f"\n50 digits, double pendulum from 2 rad, {float(end)} s of motion: processor time")
     before = time.process_time()
-    mine = integrate_digits(swinging(2), [Integer(2)] * 2, [Integer(0)] * 2, [Integer(0), end], 50)[0][-1]
+    mine = integrate_digits(swinging(2), [Integer(2)] * 2, [Integer(0)] * 2, [Integer(0), end], 50).theta[-1]
     ours = time.process_time() - before
     with mpmath.workdps(50):
         g = mpmath.mpf(GRAVITY)
@@ -248,12 +248,12 @@ def digits() -> None:
         doubled, balls = (partial(integrate_digits, *motion, None, None, kind) for kind in (DoubledSteps, Steps))
         doubled()
         started = time.process_time()
-        theta, _, steps = doubled()
+        run = doubled()
         between = time.process_time()
-        other = balls()[0]
+        other = balls().theta
         mine, theirs = 1e3 * (between - started), 1e3 * (time.process_time() - between)
-        apart = mpmath.nstr(abs(theta - other).max(), 2)
-        print(f"{n:>4} bobs, {steps} steps: {mine:.4g}, {theirs:.5g}: {theirs / mine:.3g}x; apart by {apart}")
+        apart = mpmath.nstr(abs(run.theta - other).max(), 2)
+        print(f"{n:>4} bobs, {run.steps} steps: {mine:.4g}, {theirs:.5g}: {theirs / mine:.3g}x; apart by {apart}")
 
 
 START = """

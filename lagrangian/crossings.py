@@ -1,25 +1,31 @@
 r"""Events: when an angle passes a value, found in the Taylor polynomials of the steps.
 
-Each step's series of an angle is evaluated at a few points; between two of them on different sides of the value the
-crossing is found by bisection of the same polynomial, to the last digit of the time.  Two crossings of one angle
-within an eighth of a step can be missed.
+Each step's polynomial of an angle is evaluated at a few points; between two of them on different sides of the value
+the crossing is found by Newton's iteration on the same polynomial, to the last digit of the time, in float64 and in
+balls.  Two crossings of one angle within an eighth of a step can be missed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
+from math import ceil, floor
 from typing import Any
 
+import flint
 import numpy as np
+from sympy import Integer, pi
 
 from .errors import QuantityError, SceneError
-from .stepper import TURN, TURN_LOW
+from .pieces import Pieces
+from .quantities import quantity
+from .stepper import TURN
 
-__all__ = ["Crossing", "Interpolant", "find_crossings", "flips"]
+__all__ = ["Crossing", "checked", "find_crossings", "flips"]
 
 POINTS = 8
+ROUNDED = 1e-6  # turns: more than float64 rounds
 
 
 @dataclass(frozen=True)
@@ -29,97 +35,86 @@ class Crossing:
     Attributes
     ----------
     rod : 1, ..., n
-    angle : the value, modulo a turn; rad
+    angle : the value, modulo a turn, as the exact number it is: ``pi/2`` is pi/2, a float is its dyadic; rad
     direction : 0 for both ways, 1 for growing angles, -1 for shrinking ones
+
+    Raises QuantityError or TextError where the angle is no number.
+
+    >>> Crossing(1, 0.5).angle, Crossing(2, pi/2).angle
+    (1/2, pi/2)
     """
 
     rod: int
-    angle: float
+    angle: Any
     direction: int = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "angle", quantity(self.angle, "angle"))
+        if not self.angle.is_number:
+            raise QuantityError(f"a crossing's angle is {self.angle}, which is no number: give one, such as pi/2.")
 
 
 def flips(chain: Any) -> dict[str, Crossing]:
     """One :class:`Crossing` a rod, ``"flip 1"`` to ``"flip n"``: it passes the upward vertical."""
-    top = 0.0 if chain.upright else np.pi
+    top = Integer(0) if chain.upright else pi
     return {f"flip {k}": Crossing(k, top) for k in range(1, len(chain) + 1)}
 
 
-class Interpolant:
-    """The motion at any time, from the series of every step that was made."""
-
-    def __init__(self, record: Any, n: int, order: int) -> None:
-        self.start, self.length = record[:, 0], record[:, 1]
-        rows = record[:, 2:].reshape(-1, n, order + 4)
-        self.high, self.low, self.turns, self.rates = rows[..., 0], rows[..., 1], rows[..., 2], rows[..., 3:]
-        self.powers = self.rates / np.arange(1, order + 2)
-
-    def angle(self, steps: Any, rod: int, h: Any) -> Any:
-        """How far an angle moves in the time h from the start of each of ``steps``."""
-        value = np.zeros(np.broadcast_shapes(np.shape(steps), np.shape(h)))
-        for m in range(self.powers.shape[-1] - 1, -1, -1):
-            value = (value + self.powers[steps, rod, m]) * h
-        return value
-
-    def __call__(self, t: Any) -> tuple[Any, Any]:
-        """Angles with turns and rates at one time or many."""
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-        forward = 1.0 if self.length[0] >= 0 else -1.0
-        ends = self.start[-1] + self.length[-1]
-        inside = (forward * times >= forward * self.start[0]) & (forward * times <= forward * ends)
-        if not inside.all():
-            raise QuantityError(f"the motion is known from t = {self.start[0]} to {ends}, and t is "
-                                f"{times[~inside][0]}.")
-        steps = np.searchsorted(forward * self.start, forward * times, side="right") - 1
-        h = (times - self.start[steps])[:, None]
-        theta, omega = np.zeros((len(times), self.high.shape[1])), np.zeros((len(times), self.high.shape[1]))
-        for m in range(self.powers.shape[-1] - 1, -1, -1):
-            theta = (theta + self.powers[steps, :, m]) * h
-            omega = omega * h + self.rates[steps, :, m]
-        theta = self.high[steps] + (self.low[steps] + theta) + self.turns[steps] * TURN
-        return (theta[0], omega[0]) if np.ndim(t) == 0 else (theta, omega)
+def checked(events: Mapping[str, Crossing] | None, n: int) -> Mapping[str, Crossing]:
+    """The events asked for, each a :class:`Crossing` of one of n rods; raises SceneError."""
+    for event in (events or {}).values():
+        if not isinstance(event, Crossing) or not 1 <= event.rod <= n:
+            raise SceneError(f"an event is a Crossing of one of the rods 1 to {n}, and this one is {event!r}.")
+    return events or {}
 
 
-def find_crossings(interpolant: Interpolant, events: Mapping[str, Crossing], end: float) -> dict[str, Any]:
-    """The times of every event, in order, up to ``end``."""
-    return {name: _times(interpolant, event, end) for name, event in events.items()}
+def find_crossings(motion: Pieces, events: Mapping[str, Crossing], end: Any) -> dict[str, Any]:
+    """The times of every event, in order, up to ``end``; shape (crossings,) each, in the motion's numbers; s."""
+    with flint.ctx.workprec(motion.bits):
+        lengths = motion.until(motion.given(end)[0])
+        return {name: motion.shown(list(_times(motion, event, lengths))) for name, event in events.items()}
 
 
-def _times(motion: Interpolant, event: Crossing, end: float) -> Any:
-    n = motion.high.shape[1]
-    if not isinstance(event, Crossing) or not 1 <= event.rod <= n:
-        raise SceneError(f"an event is a Crossing of one of the rods 1 to {n}, and this one is {event!r}.")
-    rod, found = event.rod - 1, []
-    forward = 1.0 if motion.length[0] >= 0 else -1.0
-    for step in range(len(motion.start)):
-        last = motion.length[step] if forward * (motion.start[step] + motion.length[step] - end) <= 0 else (
-            end - motion.start[step])
-        h = np.linspace(0.0, last, POINTS + 1)
-        base = motion.high[step, rod] - event.angle
-        value = base + (motion.low[step, rod] + motion.angle(step, rod, h))
-        for a, b, x, y in zip(h, h[1:], value, value[1:], strict=False):
-            low, high = sorted((x, y))
-            for turn in range(int(np.ceil(low / TURN)), int(np.floor(high / TURN)) + 1):
-                target = turn * TURN
-                rising = y > x
-                if (y == target != x) or x == y or event.direction * (1 if rising == (forward > 0) else -1) < 0:
-                    continue  # a crossing at the end of an interval belongs to the next one
-
-                before = base - target, motion.low[step, rod] - turn * TURN_LOW
-                found.append(motion.start[step] + _bisected(partial(_beyond, motion, step, rod, before), a, b, rising))
-    return np.array(found)
+def _times(motion: Pieces, event: Crossing, lengths: Any) -> Iterator[Any]:
+    goal = cache(partial(motion.goal, event.angle))
+    for step, length in enumerate(lengths):
+        h = motion.plain(np.arange(POINTS + 1) * length / POINTS)
+        turns = motion.beyond(step, event.rod - 1, goal(0), h).astype(float) / TURN
+        for turn in range(ceil(turns.min() - ROUNDED), floor(turns.max() + ROUNDED) + 1):
+            yield from _in_step(motion, event, step, goal(turn), h)
 
 
-def _beyond(motion: Interpolant, step: int, rod: int, before: tuple[float, float], h: float) -> Any:
-    return before[0] + (before[1] + motion.angle(step, rod, h))
+def _in_step(motion: Pieces, event: Crossing, step: int, goal: Any, h: Any) -> Iterator[Any]:
+    """The times at which the angle passes the goal, between neighbours of ``h`` on different sides of it."""
+    rod = event.rod - 1
+    value = _joined(motion, step, rod, goal, h)
+    for a, b, x, y in zip(h, h[1:], value, value[1:]):
+        rising = bool(y > x)
+        if min(x, y) <= 0 <= max(x, y) and y != 0 and event.direction * motion.forward * (2 * rising - 1) >= 0:
+            beyond, rate = partial(motion.beyond, step, rod, goal), partial(motion.rate, step, rod)
+            root = a if x == 0 else _root(beyond, rate, a, b, rising, motion)
+            yield motion.plain(motion.start[step] + root)
 
 
-def _bisected(function: Any, a: float, b: float, rising: bool) -> float:
-    for _ in range(60):
-        middle = 0.5 * (a + b)
-        if middle in (a, b):
-            break
-        if (function(middle) > 0) == rising:
-            b = middle
-        else:
-            a = middle
-    return 0.5 * (a + b)
+def _joined(motion: Pieces, step: int, rod: int, goal: Any, h: Any) -> Any:
+    """How far the angle is beyond the goal, at the end as the next step sees it: what is 0 there is 0 in it alone."""
+    value = motion.beyond(step, rod, goal, h)
+    if step + 1 < len(motion.start):
+        after = motion.beyond(step + 1, rod, goal, 0 * h[-1])
+        value[-1] = after + TURN * round(float(value[-1] - after) / TURN)
+    return value
+
+
+def _root(value: Callable[[Any], Any], slope: Callable[[Any], Any], a: Any, b: Any, rising: bool,
+          motion: Pieces) -> Any:
+    """Where ``value`` is 0 between a and b: Newton's steps, and halves of the interval where they lead out of it."""
+    last = abs(b - a) / 2 ** (motion.bits - 3)
+    h = motion.plain((a + b) / 2)
+    for _ in range(2 * motion.bits):
+        y, rate = value(h), slope(h)
+        a, b = (a, h) if (y > 0) == rising else (h, b)
+        near = motion.plain(h - y / rate) if rate != 0 else a
+        if abs(near - h) <= last:
+            return near
+        h = near if min(a, b) < near < max(a, b) else motion.plain((a + b) / 2)
+    return h

@@ -8,8 +8,9 @@ errors do not compound as if they were always at their worst.  Orders and steps 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import ceil, exp, inf, log
-from typing import Any
+from typing import Any, NamedTuple
 
 import flint
 import mpmath
@@ -23,7 +24,7 @@ from .machine import rebound
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
-__all__ = ["Steps", "best_order", "integrate_digits"]
+__all__ = ["DigitRun", "Piece", "Steps", "best_order", "bits_for", "integrate_digits", "middle", "numbers"]
 
 GUARD = 30  # bits beyond those asked for
 
@@ -42,38 +43,63 @@ def best_order(digits: float) -> int:
     return max(6, ceil(1.0 + 1.16 * digits))
 
 
-def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None = None,
-                     progress: Callable[[float], None] | None = None, steps: Callable[..., Steps] | None = None
-                     ) -> tuple[Any, Any, int]:
-    """Angles and rates at ``times``, shape (times, n), as mpmath numbers of ``digits`` digits, and the number of steps.
+def bits_for(digits: int) -> int:
+    """The precision that so many decimal digits are computed with."""
+    return int(digits * 3.3220) + GUARD
 
-    ``theta``, ``omega`` and ``times`` are exact SymPy numbers; ``steps`` makes the :class:`Steps`.  Truncation is below
-    ``10**-digits`` a step, and in balls rounding too.  Raises DriveError where the support's motion has no Taylor
-    series, QuantityError where a step shrinks to nothing.
+
+@dataclass(frozen=True)
+class Piece:
+    """One step: its start and length, s, and every angle as a python-flint polynomial of the time since its start."""
+
+    start: Any
+    length: Any
+    angles: tuple[Any, ...]
+
+
+class DigitRun(NamedTuple):
+    """Angles with turns and rates, shape (times, n), mpmath numbers; steps made; and the steps, where kept."""
+
+    theta: Any
+    omega: Any
+    steps: int
+    pieces: list[Piece] | None
+
+
+def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None = None,
+                     progress: Callable[[float], None] | None = None, steps: Callable[..., Steps] | None = None,
+                     keep: bool = False) -> DigitRun:
+    """The motion at ``times``, as mpmath numbers of ``digits`` digits.
+
+    ``theta``, ``omega`` and ``times`` are exact SymPy numbers; ``steps`` makes the :class:`Steps`; ``keep`` keeps every
+    step.  Truncation is below ``10**-digits`` a step, and in balls rounding too.  Raises DriveError where the support's
+    motion has no Taylor series, QuantityError where a step shrinks to nothing.
     """
-    bits = int(digits * 3.3220) + GUARD
     context = mpmath.mp.clone()
     context.dps = digits
-    with flint.ctx.workprec(bits):
+    with flint.ctx.workprec(bits_for(digits)):
         state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
         motion = (steps or Steps)(chain, state, digits, order)
+        motion.pieces = [] if keep else None
         marks = [Balls().number(x).mid() for x in times]
         found = []
         for mark in marks:
             found.append(motion.state_at(mark, marks[-1]))
             if progress is not None:
                 progress(float(mark))
-        return *(_numbers([state[part] for state in found], context) for part in (0, 1)), motion.count
+        angles, rates = (numbers([state[part] for state in found], context) for part in (0, 1))
+        return DigitRun(angles, rates, motion.count, motion.pieces)
 
 
-def _numbers(rows: list[Any], context: Any) -> Any:
-    out = np.empty((len(rows), len(rows[0])), dtype=object)
-    for i, row in enumerate(rows):
-        for k, x in enumerate(row):
-            mantissa, exponent = x.mid().man_exp()
-            out[i, k] = context.mpf((0, int(mantissa), int(exponent), int(mantissa).bit_length()) if mantissa >= 0 else
-                                    (1, -int(mantissa), int(exponent), int(-mantissa).bit_length()))
-    return out
+def numbers(balls: Any, context: Any) -> Any:
+    """The middles of balls, rounded to mpmath numbers of a context; same shape."""
+    def number(x: Any) -> Any:
+        mantissa, exponent = (int(part) for part in x.mid().man_exp())
+        return context.mpf((int(mantissa < 0), abs(mantissa), exponent, mantissa.bit_length()))
+    return np.frompyfunc(number, 1, 1)(np.asarray(balls, dtype=object))
+
+
+middle = np.frompyfunc(Balls().midpoint, 1, 1)  # of balls, in any shape
 
 
 class Steps:
@@ -87,7 +113,7 @@ class Steps:
         self.joints = chain.joints_in(self.arithmetic)
         self.theta, self.omega = (self.arithmetic.array(part) for part in state)
         self.gravity = self.arithmetic.number(chain.gravity)
-        self.middle = np.frompyfunc(self.arithmetic.midpoint, 1, 1)
+        self.pieces: list[Piece] | None = None  # where every step is added, if it shall be kept
         self.pull: Any = None
         self.series: Any = None
         self.start: Any = None
@@ -134,6 +160,16 @@ class Steps:
             rate = rate * h + w[:, m]
         return (angle * h + w[:, order]) * h, rate * h
 
+    def rates(self) -> Any:
+        """The series of the rates in balls, rising powers; shape (n, order + 1)."""
+        return self.series[:, 2, self.order::-1]
+
+    def piece(self) -> Piece:
+        """The step from here; state and polynomials without their radii."""
+        rates = middle(self.rates()).tolist()
+        angles = (flint.arb_poly(rate).integral() + theta for rate, theta in zip(rates, self.theta))
+        return Piece(self.start, self.length, tuple(angles))
+
     def _expand(self, end: Any) -> None:
         n = len(self.chain)
         s, c = np.empty(n, dtype=object), np.empty(n, dtype=object)
@@ -146,6 +182,8 @@ class Steps:
         self.series = self.expanded(s, c, delta)
         self.length = self._length(end)
         self.count += 1
+        if self.pieces is not None:
+            self.pieces.append(self.piece())
 
     def _length(self, end: Any) -> Any:
         remaining = float(end - self.start)
@@ -159,4 +197,4 @@ class Steps:
 
     def _moved(self, h: Any) -> tuple[Any, Any]:
         angle, rate = self.increments(h)
-        return self.middle(self.theta + angle), self.middle(self.omega + rate)
+        return middle(self.theta + angle), middle(self.omega + rate)

@@ -56,6 +56,11 @@ def to_pairs(numbers: Any) -> Any:
     return high + 1j * (flat - high).astype(float)
 
 
+def to_balls(pairs: Any) -> Any:
+    """Pairs, complex128, as balls; same shape."""
+    return np.frompyfunc(lambda x: flint.arb(x.real) + flint.arb(x.imag), 1, 1)(pairs)
+
+
 class DoubledSteps(Steps):
     """:class:`lagrangian.digits.Steps` with series in pairs.
 
@@ -94,8 +99,11 @@ class DoubledSteps(Steps):
             raise OutOfRange
         out = np.empty((2, len(self.chain)), complex)
         _translated("pair_increments")(self.series, self.order, high, float(h - high), out)
-        angle, rate = ([flint.arb(x.real) + flint.arb(x.imag) for x in row] for row in out.tolist())
-        return self.arithmetic.array(angle), self.arithmetic.array(rate)
+        angle, rate = to_balls(out)
+        return angle, rate
+
+    def rates(self) -> Any:
+        return to_balls(super().rates())
 
 
 def _constants(numbers: Any) -> Any:

@@ -20,12 +20,13 @@ import numpy as np
 
 from .chain import CompiledChain
 from .compiled import CompiledEquations, compile_equations
-from .crossings import Crossing, Interpolant, find_crossings
-from .digits import best_order, integrate_digits
+from .crossings import Crossing, checked, find_crossings
+from .digits import DigitRun, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .equations import EquationsOfMotion
 from .errors import NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
+from .pieces import BallPieces, FloatPieces
 from .quantities import quantity, refuse_text
 from .solvers import SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .stepper import TURN
@@ -55,14 +56,15 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
         ``"linear"``, small swings about hanging, with their error against the nonlinear motion
     digits : None, or how many decimal digits to compute with; results are then mpmath numbers.  Up to 31 it is done in
         double-double where numba is installed and its range suffices, else in balls; ``trajectory.method`` says so
-    dense : whether ``trajectory.at(t)`` shall work between the times
-    events : named :class:`Crossing` to look for, such as ``flips(chain)``
+    dense : whether ``trajectory.at(t)`` shall work between the times, with as many digits as at them
+    events : named :class:`Crossing` to look for, such as ``flips(chain)``; their times have the digits of the states
     progress : True for a line on the screen, or a function of the time reached
 
     Raises
     ------
     NotASceneError, SceneError
-        Not a chain; a state of another length; times that are not monotone; a method that does not exist.
+        Not a chain; a state of another length; times that are not monotone; a method that does not exist; an event
+        that is no crossing of one of the rods.
     QuantityError, TextError, DriveError
         Numbers that are not finite; text; a motion that cannot be followed; a support without a Taylor series.
 
@@ -89,15 +91,13 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     if not isinstance(method, str) or method not in METHODS:
         raise SceneError(f"method is {method!r}: give one of {', '.join(METHODS)}.")
     report = _reporter(progress, times)
+    events = checked(events, n)
+    keep = dense or bool(events)
     if digits is not None or accuracy < FLOAT_LIMIT:
         if method != "taylor":
             raise SceneError(f"method={method!r} computes in float64, which cannot give {accuracy:.1e}: choose "
                              f"'taylor'.")
-        if dense or events is not None:
-            raise SceneError(f"dense output and events come from float64 series, which cannot give {accuracy:.1e} or "
-                             f"digits={digits}: leave them out, or ask for an accuracy above {FLOAT_LIMIT:.0e}.")
-        return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, report)
-    keep = dense or events is not None
+        return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, dense, events, report)
     if method == "taylor":
         run, error = _to_accuracy(chain, theta, omega, times, accuracy, keep, report)
     else:
@@ -105,8 +105,8 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
             raise SceneError(f"dense output and events come from Taylor series, and method is {method!r}: choose "
                              f"'taylor'.")
         run, error = _by_others(chain, evaluated, theta, omega, times, accuracy, method)
-    motion = Interpolant(run.record, n, run.order) if keep else None
-    found = find_crossings(motion, events, times[-1]) if motion is not None and events is not None else {}
+    motion = FloatPieces(run.record, n, run.order) if keep else None
+    found = find_crossings(motion, events, times[-1]) if motion is not None else {}
     return Trajectory(times, run.theta, run.omega, run.turns.astype(np.int64), run.angle,
                       chain.energy(run.angle.T if chain.springs is None else run.theta.T, run.omega.T), error, accuracy,
                       method, run.steps, run.order, chain, found, motion if dense else None)
@@ -159,16 +159,18 @@ def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times:
 
 
 def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact_times: Any, accuracy: float,
-                 digits: int | None, report: Callable[[float], None] | None) -> Trajectory:
+                 digits: int | None, dense: bool, events: Mapping[str, Crossing],
+                 report: Callable[[float], None] | None) -> Trajectory:
     if digits is not None and (isinstance(digits, bool) or not isinstance(digits, int) or digits < 1):
         raise QuantityError(f"digits is {digits!r}: give how many decimal digits to compute with, such as 30.")
     used = digits if digits is not None else ceil(-log10(accuracy)) + 6
     exact = [[quantity(x, "state") for x in part] for part in (theta, omega)]
     while True:
-        kind, (angles, rates, steps), (finer, _, _) = _twice(chain, exact[0], exact[1], exact_times, used, report)
+        kind, run, finer = _twice(chain, exact[0], exact[1], exact_times, used, dense or bool(events), report)
+        angles, rates = run.theta, run.omega
         context = angles.flat[0].context
         differences = [max(abs(x - context.convert(y)) for x, y in zip(*rows, strict=True))
-                       for rows in zip(angles, finer, strict=True)]
+                       for rows in zip(angles, finer.theta, strict=True)]
         error = SAFETY * np.maximum.accumulate(np.array([float(x) for x in differences])) + 10.0**-used
         if digits is not None or error[-1] <= accuracy:
             break
@@ -177,22 +179,24 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact
     angle = angles - turns * (2 * context.pi)
     energy = chain.energy(np.asarray(angle if chain.springs is None else angles, dtype=float).T,
                           np.asarray(rates, dtype=float).T)
+    motion = BallPieces(run.pieces, context) if run.pieces is not None else None
+    found = find_crossings(motion, events, exact_times[-1]) if motion is not None else {}
     return Trajectory(times, angles, rates, turns, angle, energy, error, accuracy, f"taylor, {used} digits in {kind}",
-                      steps, best_order(used), chain)
+                      run.steps, best_order(used), chain, found, motion if dense else None)
 
 
-def _twice(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int,
-           report: Callable[[float], None] | None) -> tuple[str, Any, Any]:
+def _twice(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, keep: bool,
+           report: Callable[[float], None] | None) -> tuple[str, DigitRun, DigitRun]:
     """The numbers used, the motion, and a finer one: with other rounding of the data, or with eight digits more."""
+    run = partial(integrate_digits, chain, theta, omega, times)
     if has_doubled(digits):
         finer = partial(DoubledSteps, unsettled=UNIT)
         try:
-            return ("double-double", integrate_digits(chain, theta, omega, times, digits, None, report, DoubledSteps),
-                    integrate_digits(chain, theta, omega, times, digits + 3, best_order(digits) + 4, None, finer))
+            return ("double-double", run(digits, None, report, DoubledSteps, keep),
+                    run(digits + 3, best_order(digits) + 4, None, finer))
         except OutOfRange:
             pass
-    return ("balls", integrate_digits(chain, theta, omega, times, digits, None, report),
-            integrate_digits(chain, theta, omega, times, digits + 8, None, report))
+    return "balls", run(digits, None, report, None, keep), run(digits + 8)
 
 
 # -- what is given --------------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ class Trajectory:
         tighter run with other rounding of the data, not a bound
     accuracy : the error that was asked for; rad
     method, steps, order : how the motion was found
-    events : mapping of names to arrays of times, see :class:`lagrangian.Crossing`
+    events : mapping of names to arrays of times, s, in the numbers of theta; see :class:`lagrangian.Crossing`
     chain : the :class:`lagrangian.CompiledChain`
     """
 
@@ -80,7 +80,13 @@ class Trajectory:
                 "further.")
 
     def at(self, t: Any) -> tuple[Any, Any]:
-        """Angles and rates at any time within the span, shape (n,), or (k, n) for k times; needs ``dense=True``."""
+        """Angles and rates at any time within the span, shape (n,), or (k, n) for k times; needs ``dense=True``.
+
+        They come from the series of the step that holds the time, in the numbers of ``theta`` and with their error.
+        With digits a time is the exact number it is given as: a fraction, ``pi/3``, the dyadic that a float is.
+
+        Raises QuantityError for a time outside the span, for what is no number, and without ``dense=True``.
+        """
         if self.interpolant is None:
             raise QuantityError("states between the times asked for are kept on request: simulate(..., dense=True).")
         return self.interpolant(t)  # type: ignore[no-any-return]

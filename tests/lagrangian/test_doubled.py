@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from sympy import Integer, Rational, Symbol, cos, sin, sqrt
 
-from lagrangian import CompiledChain, Crossing, Rod, Scene, SceneError, Support, simulate
+from lagrangian import CompiledChain, Crossing, Rod, Scene, Support, flips, simulate
 from lagrangian.angles import product
 from lagrangian.arithmetic import Balls
 from lagrangian.digits import Steps, integrate_digits
@@ -217,19 +217,40 @@ def test_an_accuracy_beyond_floats_is_met_in_double_double_and_beyond_that_in_ba
     (CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], Rational(1, 10**12)), Rational(1, 10**6)),  # steps of days
 ], ids=["massless", "heavy", "fast", "slow"])
 def test_what_leaves_the_range_of_floats_is_computed_in_balls(chain, omega):
-    """The answer is right, and says how it was found."""
+    """The answer is right, and says how it was found; nothing is kept of the steps that left the range."""
     n, end = len(chain), Rational(1, 10) / omega
-    motion = simulate(chain, [Rational(k, 3) for k in range(n)], [omega] * n, [0, end], digits=25)
+    motion = simulate(chain, [Rational(k, 3) for k in range(n)], [omega] * n, [0, end], digits=25, dense=True)
 
     assert motion.method == "taylor, 25 digits in balls" and motion.error[-1] < 1e-20
+    assert abs(motion.at([0, end])[0] - motion.theta).max() < 1e-23
 
 
-def test_events_and_dense_output_with_more_digits_are_refused():
-    """They come from float64 series: nothing is left out in silence."""
-    chain = CompiledChain([1], [1], [1], [1])
-    for options in ({"dense": True}, {"events": {"down": Crossing(1, 0.0)}}):
-        with pytest.raises(SceneError, match="float64"):
-            simulate(chain, [1], [0], [0, 1], digits=30, **options)
+def test_states_between_the_times_and_flips_are_those_of_balls():
+    """30 digits against 38 of a double pendulum that turns over."""
+    half, gyration = [Rational(1, 2)] * 2, [Rational(3, 5)] * 2
+    chain = CompiledChain([1, 2], [1, 1], half, gyration, 9.81, upright=False)
+    mine, true = (simulate(chain, [0, 0], [12, 9], [0, 1], digits=d, dense=True, events=flips(chain)) for d in (30, 38))
+    times = [Rational(k, 7) for k in range(8)]
+
+    assert mine.method.endswith("double-double") and true.method.endswith("balls")
+    for x, y in zip(mine.at(times), true.at(times), strict=True):
+        assert abs(x - y).max() < 1e-26
+    for name in flips(chain):
+        assert len(mine.events[name]) == len(true.events[name]) > 0
+        assert abs(mine.events[name] - true.events[name]).max() < 1e-27
+
+
+def test_a_crossing_where_two_steps_of_pairs_meet_belongs_to_one_of_them():
+    """Increments in pairs round otherwise than the polynomials in balls that crossings are sought in."""
+    chain = CompiledChain([1], [1], [Rational(1, 2)], [Rational(3, 5)], 9.81, upright=False)
+    run = partial(simulate, chain, [2], [3], [0, 2], digits=31)
+    pieces = run(dense=True).interpolant
+    exact = [angle[0].man_exp() for (angle,) in pieces.angles]
+    events = {str(k): Crossing(1, Rational(int(m)) * Rational(2) ** int(e)) for k, (m, e) in enumerate(exact)}
+    found = run(events=events).events
+
+    for k, start in enumerate(pieces.shown(pieces.start)):
+        assert [x for x in found[str(k)] if abs(x - start) < 1e-9] == [start]
 
 
 WITHOUT_NUMBA = """
@@ -247,8 +268,8 @@ def test_without_numba_the_same_digits_come_from_balls():
     done = subprocess.run(code, cwd=Path(__file__).parents[2], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     method, angle = json.loads(done.stdout)
-    mine, _, _ = integrate_digits(CompiledChain([1, 2], [1, 1], [1, 1], [1, 1]), [Integer(1), Integer(2)],
-                                  [Integer(0)] * 2, [Integer(0), Integer(1)], 28, None, None, DoubledSteps)
+    mine = integrate_digits(CompiledChain([1, 2], [1, 1], [1, 1], [1, 1]), [Integer(1), Integer(2)], [Integer(0)] * 2,
+                            [Integer(0), Integer(1)], 28, None, None, DoubledSteps).theta
 
     assert method == "taylor, 28 digits in balls"
     assert abs(mine[-1, 0].context.mpf(angle) - mine[-1, 0]) < 1e-26

@@ -1,0 +1,190 @@
+r"""A motion as pieces, the steps that were made: in each, every angle is a polynomial of the time since its start.
+
+The polynomials are the Taylor series that the steps were made with, so that nothing is interpolated: between the
+times asked for a state has the digits that it has at them.  There are two kinds of numbers:
+
+    float64    an angle is ``high + low`` and whole turns, its polynomial rows of coefficients
+    balls      an angle with its turns is one python-flint polynomial, evaluated with the bits of the motion; results
+               are mpmath numbers.  They serve double-double too, whose pairs are exact in them
+
+What is done with pieces is written once: which of them holds a time, here, and when an angle passes a value, in
+:mod:`lagrangian.crossings`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import flint
+import numpy as np
+from sympy import pi
+
+from .arithmetic import Balls
+from .digits import Piece, bits_for, middle, numbers
+from .errors import QuantityError
+from .floats import split
+from .quantities import quantity, refuse_text
+from .stepper import TURN, TURN_LOW, total
+
+__all__ = ["BallPieces", "FloatPieces", "Pieces"]
+
+
+class Pieces:
+    """The motion at any time within the steps made.
+
+    Attributes
+    ----------
+    start, length : shape (steps,), numbers of the motion; length is negative in motions backwards; s
+    forward : 1 or, in motions backwards, -1
+    bits : of the numbers' mantissas
+    """
+
+    start: Any
+    length: Any
+    bits: int
+
+    @property
+    def forward(self) -> int:
+        return 1 if self.length[0] >= 0 else -1
+
+    def __call__(self, t: Any) -> tuple[Any, Any]:
+        """Angles with turns, rad, and rates, rad/s, at one time, shape (n,), or at k, shape (k, n).
+
+        Raises QuantityError where a time is none, or lies beyond the steps made; TextError for text.
+        """
+        refuse_text(t, "t")
+        with flint.ctx.workprec(self.bits):
+            times = self.given(t)
+            steps = self.holding(times)
+            theta, omega = self.states(steps, times - self.start[steps])
+        return (theta[0], omega[0]) if np.ndim(t) == 0 else (theta, omega)
+
+    def holding(self, times: Any) -> Any:
+        """The step that each time lies in; shape (k,)."""
+        forward, end = self.forward, self.plain(self.start[-1:] + self.length[-1:])
+        inside = (forward * times >= forward * self.start[0]) & (forward * times <= forward * end)
+        if not inside.all():
+            first, last, beyond = self.shown([self.start[0], end[0], times[~inside][0]])
+            raise QuantityError(f"the motion is known from t = {first} to {last}, and t is {beyond}.")
+        return np.searchsorted(forward * self.start, forward * times, side="right") - 1
+
+    def until(self, end: Any) -> Any:
+        """The length of every step, cut off at ``end``; shape (steps,)."""
+        left = self.plain(end - self.start)
+        return np.where(self.forward * self.length <= self.forward * left, self.length, left)
+
+    def given(self, t: Any) -> Any:
+        """One time or many as numbers of the motion; shape (k,)."""
+        raise NotImplementedError
+
+    def shown(self, found: Sequence[Any]) -> Any:
+        """Numbers of the motion as the user is given them; shape (k,)."""
+        raise NotImplementedError
+
+    def plain(self, x: Any) -> Any:
+        """Numbers without the radius that arithmetic may have given them; any shape."""
+        return x
+
+    def states(self, steps: Any, h: Any) -> tuple[Any, Any]:
+        """Angles with turns and rates the time ``h`` after the start of each step; shape (k, n) each."""
+        raise NotImplementedError
+
+    def goal(self, angle: Any, turn: int) -> Any:
+        """The exact number ``angle + 2 pi turn`` as :meth:`beyond` takes it."""
+        raise NotImplementedError
+
+    def beyond(self, step: int, rod: int, goal: Any, h: Any) -> Any:
+        """How far an angle is beyond a goal, modulo a turn, ``h`` after the start of a step; shape of h; rad."""
+        raise NotImplementedError
+
+    def rate(self, step: int, rod: int, h: Any) -> Any:
+        """The rate of a rod ``h`` after the start of a step; rad/s."""
+        raise NotImplementedError
+
+
+def _exact(t: Any) -> list[Any]:
+    """One time or many as exact SymPy numbers."""
+    found = [quantity(x, "t") for x in np.atleast_1d(np.asarray(t, dtype=object))]
+    for x in found:
+        if not x.is_number:
+            raise QuantityError(f"t holds {x}, which is no number: give numbers, such as 1/2 or pi.")
+    return found
+
+
+class FloatPieces(Pieces):
+    """The steps of :func:`lagrangian.floats.integrate_floats`, from its record."""
+
+    bits = 53
+
+    def __init__(self, record: Any, n: int, order: int) -> None:
+        self.start, self.length = record[:, 0], record[:, 1]
+        rows = record[:, 2:].reshape(-1, n, order + 4)
+        self.high, self.low, self.turns, self.rates = rows[..., 0], rows[..., 1], rows[..., 2], rows[..., 3:]
+        self.powers = self.rates / np.arange(1, order + 2)
+
+    def given(self, t: Any) -> Any:
+        found = np.atleast_1d(np.asarray(t))
+        return found.astype(float) if found.dtype.kind in "fiu" else np.array([float(x) for x in _exact(t)])
+
+    def shown(self, found: Sequence[Any]) -> Any:
+        return np.array(found)
+
+    def states(self, steps: Any, h: Any) -> tuple[Any, Any]:
+        moved = _horner(self.powers[steps], h[:, None]) * h[:, None]
+        theta = self.high[steps] + (self.low[steps] + moved) + self.turns[steps] * TURN
+        return theta, _horner(self.rates[steps], h[:, None])
+
+    def goal(self, angle: Any, turn: int) -> Any:
+        high, low = split([angle], True)[:2, 0]
+        high, rest = total(high, turn * TURN)
+        return high, rest + (low + turn * TURN_LOW)
+
+    def beyond(self, step: int, rod: int, goal: Any, h: Any) -> Any:
+        high, rest = total(self.high[step, rod], -goal[0])
+        return high + (rest + (self.low[step, rod] - goal[1]) + _horner(self.powers[step, rod], h) * h)
+
+    def rate(self, step: int, rod: int, h: Any) -> Any:
+        return _horner(self.rates[step, rod], h)
+
+
+def _horner(coefficients: Any, h: Any) -> Any:
+    """The polynomial with these ``coefficients[..., m]`` of ``h**m``."""
+    value = 0.0 * h
+    for m in range(coefficients.shape[-1] - 1, -1, -1):
+        value = value * h + coefficients[..., m]
+    return value
+
+
+class BallPieces(Pieces):
+    """The steps of :func:`lagrangian.digits.integrate_digits`; results are numbers of ``context``."""
+
+    def __init__(self, pieces: Sequence[Piece], context: Any) -> None:
+        self.context, self.bits = context, bits_for(context.dps)
+        self.start, self.length = (np.array(part, dtype=object) for part in ([p.start for p in pieces],
+                                                                             [p.length for p in pieces]))
+        self.angles = [p.angles for p in pieces]
+
+    def given(self, t: Any) -> Any:
+        return self.plain(Balls().array(Balls().number(x) for x in _exact(t)))
+
+    def shown(self, found: Sequence[Any]) -> Any:
+        return numbers(np.array(found, dtype=object), self.context)
+
+    def plain(self, x: Any) -> Any:
+        return middle(x)
+
+    def states(self, steps: Any, h: Any) -> tuple[Any, Any]:
+        shape = len(h), len(self.angles[0])
+        theta = [angle(x) for step, x in zip(steps, h) for angle in self.angles[step]]
+        omega = [angle.derivative()(x) for step, x in zip(steps, h) for angle in self.angles[step]]
+        return self.shown(theta).reshape(shape), self.shown(omega).reshape(shape)
+
+    def goal(self, angle: Any, turn: int) -> Any:
+        return Balls().number(angle + 2 * pi * turn).mid()
+
+    def beyond(self, step: int, rod: int, goal: Any, h: Any) -> Any:
+        return middle(np.frompyfunc(self.angles[step][rod], 1, 1)(h) - goal)
+
+    def rate(self, step: int, rod: int, h: Any) -> Any:
+        return self.angles[step][rod].derivative()(h).mid()
