@@ -94,7 +94,7 @@ class Balls(Arithmetic):
     def coerced(self, x: Any) -> Any:
         if isinstance(x, flint.arb):
             return x
-        return flint.arb(_dyadic(x._mpf_)) if isinstance(x, mpmath.mpf) else flint.arb(x)
+        return flint.arb(_dyadic(x._mpf_)) if isinstance(x, mpmath.ctx_mp_python._mpf) else flint.arb(x)
 
 
 def _dyadic(parts: Any) -> Any:

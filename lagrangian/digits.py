@@ -189,7 +189,8 @@ class Steps:
         remaining = float(end - self.start)
         logs = [-size / (self.order + 1 - i) for i, size in enumerate(self.magnitudes()) if size > -inf]
         h = exp(min(logs) + log(self.tolerance) / (self.order + 1)) if logs else 2 * abs(remaining) + 1
-        h = min(h, 2 * abs(remaining) + 1e-300, FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega), 1e-300))
+        h = min(h, 2 * abs(remaining) + 1e-29 * abs(float(self.start)) + 1e-300,
+                FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega)))
         if not h > 1e-30 * abs(float(self.start)) or h != h:
             raise QuantityError(f"the motion cannot be followed beyond t = {float(self.start)}: the step shrinks to "
                                 f"{h}.")

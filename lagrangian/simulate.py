@@ -232,7 +232,11 @@ def _quantities(values: Any, name: str, wanted: str) -> list[Any]:
         entries = list(values)
     except TypeError:
         raise SceneError(f"{name} is {values!r}: give {wanted}.") from None
-    return [quantity(x, f"{name}[{k}]") for k, x in enumerate(entries)]
+    found = [quantity(x, f"{name}[{k}]") for k, x in enumerate(entries)]
+    symbols = [x for x in found if not x.is_number]
+    if symbols:
+        raise QuantityError(f"{name} holds {symbols[0]}, which is no number: give numbers, such as 1/2 or pi.")
+    return found
 
 
 def _initial(values: Any, name: str, n: int) -> Any:
@@ -243,9 +247,6 @@ def _initial(values: Any, name: str, n: int) -> Any:
                                 f"numbers.")
     else:
         found = _quantities(values, name, f"one number for each of the {n} rods")
-        symbols = [x for x in found if not x.is_number]
-        if symbols:
-            raise QuantityError(f"{name} holds {symbols[0]}, which is no number: give numbers, such as 1/2 or pi.")
     if len(found) != n or np.ndim(found) != 1:
         raise SceneError(f"the chain has {n} rods, and {name} has shape {np.shape(found)}: give {n} numbers.")
     return found

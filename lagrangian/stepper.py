@@ -135,7 +135,7 @@ def advance(rods: Any, damping: Any, springs: Any, pull: Any, waves: Any, tolera
         expand(factors, damping, springs, delta, state[3], pull[0], pull[1], order, 1.0, held, series)
         remaining = (end - clock[0]) - clock[1]
         h = reach(series, order, tolerance)
-        longest = 2.0 * abs(remaining) + 1e-300
+        longest = 2.0 * abs(remaining) + 1e-14 * abs(clock[0]) + 1e-300
         for k in range(n):
             if longest * abs(state[3, k]) > FARTHEST:
                 longest = FARTHEST / abs(state[3, k])

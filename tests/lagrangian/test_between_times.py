@@ -181,3 +181,18 @@ def test_an_accuracy_beyond_floats_has_states_and_events_too():
     (angle,), _ = motion.at(motion.events["down"][0])
 
     assert motion.accurate and abs(angle) < 1e-33
+
+
+@each_kind
+@pytest.mark.parametrize("times", [[1], [3, 3], [-2]], ids=str)
+def test_a_motion_of_no_length_is_its_start(digits, times):
+    """At whatever time it is."""
+    motion = simulate(TWO, [2, 1], [0, 3], times, digits=digits)
+
+    assert [float(x) for x in motion.theta[-1]] == [2, 1] and [float(x) for x in motion.omega[-1]] == [0, 3]
+
+
+def test_a_time_that_is_a_symbol_is_refused():
+    """With its name."""
+    with pytest.raises(QuantityError, match="times holds t, which is no number"):
+        simulate(TWO, [2, 1], [0, 3], [0, Symbol("t")])

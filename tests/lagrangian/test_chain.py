@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from fractions import Fraction
 from pathlib import Path
 
 import flint
@@ -38,7 +39,7 @@ from lagrangian import (
     TextError,
     euler_lagrange,
 )
-from lagrangian.arithmetic import MPNumbers
+from lagrangian.arithmetic import Balls, MPNumbers
 from lagrangian.errors import NotAQuantityError
 
 t = symbols("t")
@@ -359,3 +360,15 @@ def test_compile_says_which_symbol_has_no_value():
     with pytest.raises(TextError):
         Scene([Rod.bob(m, l)]).compile({"m": 1})
 
+
+def test_balls_of_numbers_of_any_mpmath_context_are_the_numbers_themselves():
+    """Dyadic, not near them: a third in 60 digits, of a context of its own."""
+    context = mpmath.mp.clone()
+    context.dps = 60
+    third = 1 / context.mpf(3)
+
+    with flint.ctx.workprec(300):
+        ball = Balls().coerced(third)
+        mantissa, exponent = ball.man_exp()
+        assert ball.is_exact() and Fraction(int(mantissa)) * Fraction(2) ** int(exponent) == Fraction(
+            int(third.man)) * Fraction(2) ** int(third.exp)
