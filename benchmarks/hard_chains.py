@@ -2,8 +2,10 @@
 
     python benchmarks/hard_chains.py [6000]
 
-The chains are those of ``tests/extremes/test_chains.py``, one to twelve rods with gravity.  Beside the worst errors
-stands how far the exact answer moves if every number of the chain and its state goes to a next float.
+None is above 4e-15, since answers in doubt are found again in pairs of floats (``lagrangian/redone.py``).  float64
+alone leaves 32 of 6000 above it, the worst at 2e-13.  The chains are those of ``tests/extremes/test_chains.py``, one to
+twelve rods with gravity.  Beside the worst errors stands how far the exact answer moves if every number of the chain
+and its state goes to a next float.
 """
 
 from __future__ import annotations

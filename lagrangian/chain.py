@@ -37,7 +37,8 @@ from .errors import NotAQuantityError, QuantityError, SceneError
 from .lanes import LANES, accelerate_lanes
 from .machine import has_numba, machine
 from .quantities import quantity, refuse_text
-from .recursion import accelerate_bobs, accelerate_rods
+from .recursion import DOUBT, accelerate_bobs, accelerate_rods
+from .redone import FINE, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
 
@@ -65,8 +66,10 @@ class CompiledChain:
     model : None, ``"bobs"`` or ``"rods"``; None takes the least that will do, and ``chain.model`` says which
 
     Floats are taken as the exact numbers they are, SymPy numbers and fractions too.  Accelerations in float64 round:
-    within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart; at one random state of such chains in 200, where
-    joints pull against each other, more, and up to 3e-13 was seen: give mpmath numbers there.
+    within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart.  Where float64 leaves that in doubt, at one
+    ordinary state in some hundreds and at one in fifteen of such chains, the same recursion runs again with 31 digits
+    or more.  Not asked are many chains at once whose rods are even (masses and lengths within a factor 100): at one
+    random state in 10**4 they are beyond 4e-15, and 1e-14 was seen.
 
     Raises
     ------
@@ -78,9 +81,10 @@ class CompiledChain:
 
     Speed and accuracy
     ------------------
-    With numba: 25 to 40 ns a link for one long chain, 8 to 12 ns a link and chain for a thousand chains.  Without
-    it the same source runs as Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a third
-    slower; such an angle loses nothing as the float that it is, but that float itself knows the angle to 1e-10.
+    With numba: 25 to 40 ns a link for one long chain, 8 to 12 ns a link and chain for a thousand chains, a third
+    more where rods are uneven; an answer in doubt costs ten times more, and the first one some seconds of translation.
+    Without numba the same source runs as Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a
+    third slower; such an angle loses nothing as the float that it is, but that float itself knows the angle to 1e-10.
 
     >>> chain = CompiledChain([1, 1], [2, 2], [1, 1], [1.2, 1.2], gravity=10)
     >>> chain.model, chain.acceleration(0, [0.0, 0.0], [1.0, -1.0]).round(12) + 0.0
@@ -227,9 +231,40 @@ class CompiledChain:
                 raise SceneError(f"theta has shape {theta.shape} and omega {omega.shape}: give both the same shape.")
         ax, ay = self._steady_pull if self._steady else map(float, self.pull(t))
         out = np.empty_like(theta)
-        if not (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out):
+        done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
+        if not done:
             raise QuantityError(_no_answer(t, theta, omega))
+        if doubtful if theta.ndim == 1 else np.any(doubtful):
+            n, doubtful = len(self), np.atleast_1d(doubtful)
+            out.reshape(n, -1)[:, doubtful] = self._again(t, *(x.reshape(n, -1)[:, doubtful] for x in (theta, omega)))
         return out
+
+    @cached_property
+    def _even(self) -> bool:
+        """Whether masses, and lengths, are within a factor 100 of each other, and no rod is a tenth as wide as long."""
+        m, l, I = self.rods[:, :3].T
+        return bool(m.max() <= 100 * m.min() and l.max() <= 100 * l.min() and (m * l * l <= 100 * I).all())
+
+    def _again(self, t: Any, theta: Any, omega: Any) -> Any:
+        """``theta''`` of states (n, chains) from exact numbers, rounded once."""
+        pull = self.pull(t) if self.support.function is not None else self.pull(FINE.coerced(t), FINE)
+        found = in_pairs(*self._fine, pull, theta, omega)
+        if found is None:
+            found = np.empty_like(theta)
+            for j in range(theta.shape[1]):
+                found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
+        return found
+
+    @cached_property
+    def _fine(self) -> tuple[Any, Any]:
+        """Rods and joints as mpmath numbers of FINE."""
+        if self._columns[0].dtype == object:
+            return self.rods_in(FINE), self.joints_in(FINE)
+        number = FINE.context.mpf
+        m, l, H, R = ([number(x) for x in values.tolist()] for values in self._columns)
+        light = LIGHT * max(m)
+        rows = [rod_row(x or light, *rest) for x, *rest in zip(m, l, H, [x**2 for x in R], strict=True)]
+        return np.array(rows, dtype=object), self.joints_in(FINE)
 
     @cached_property
     def _steady_pull(self) -> tuple[float, float]:
@@ -240,41 +275,47 @@ class CompiledChain:
     def _joint_floats(self) -> tuple[Any, Any]:
         return to_floats(self._joints[0]), to_floats(self._joints[1])
 
-    def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any, large: bool | None = None) -> bool:
+    def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any,
+             large: bool | None = None) -> tuple[bool, Any]:
         if not has_numba():
             return self._many(theta, omega, ax, ay, out)
-        space = np.empty(7 * self._count) if self._count < LONG else self._space()
+        space = np.empty(9 * self._count) if self._count < LONG else self._space()
         if self.model == "bobs":
-            done = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, space, out)
+            found = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, space, out)
         else:
             tau = self.torques(theta, omega) if self.has_torques else None
-            done = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, space, out)
-        if done or large or not abs(theta).max() >= 0.5 * LARGEST:
-            return done  # type: ignore[no-any-return]
+            found = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, space, out)
+        if found[0] or large or not abs(theta).max() >= 0.5 * LARGEST:
+            return found  # type: ignore[no-any-return]
         return self._one(theta, omega, ax, ay, out, True)
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""
         if not hasattr(self._kept, "space"):
-            self._kept.space = np.empty(7 * self._count)
+            self._kept.space = np.empty(9 * self._count)
         return self._kept.space
 
-    def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> bool:
+    def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
         tau, n = self.torques(theta, omega), len(self)
-        if has_numba() and theta.ndim == 2 and machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay,
-                                                                         np.empty((n, 6 * LANES)), out):
-            return True
+        if has_numba() and theta.ndim == 2:
+            doubtful = None if self._even else np.empty(theta.shape[1], bool)
+            work = np.empty((n, (6 if self._even else 8) * LANES))
+            if machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, doubtful, out):
+                return True, doubtful
         s, c = np.empty_like(theta), np.empty_like(theta)
+        doubt = np.empty((2, *theta.shape))
         with np.errstate(all="ignore"):
             sines_of_large_joints(theta, s, c)
-            accelerate_rods(self.rods, omega * omega, tau, s, c, ax, ay, np.empty((n, 4, *theta.shape[1:])), out)
-        return bool(np.isfinite(out).all())
+            accelerate_rods(self.rods, omega * omega, tau, s, c, ax, ay, np.empty((n, 4, *theta.shape[1:])), doubt, out)
+            return bool(np.isfinite(out).all()), ~(doubt[0].max(axis=0) <= DOUBT**2 * (out * out).max(axis=0))
 
     def torques(self, theta: Any, omega: Any) -> Any:
         """The torque of dampers and springs on every rod, None where there are none; N m, the shape of theta."""
         return _torques(theta, omega, *self._joint_floats) if self.has_torques else None
 
-    def _in_arithmetic(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any) -> Any:
+    def _in_arithmetic(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any, constants: Any = None,
+                       pull: Any = None) -> Any:
+        """``constants``: rods and joints, and ``pull``, where they are known already."""
         n = len(self)
         theta, omega = (arithmetic.array(x) for x in (theta, omega))
         if len(theta) != n or len(omega) != n:
@@ -282,15 +323,16 @@ class CompiledChain:
         s, c = (np.empty(n, dtype=object) for _ in range(2))
         for k in range(n):
             s[k], c[k] = arithmetic.sines(theta[k] - theta[k - 1] if k else theta[0])
-        ax, ay = self.pull(arithmetic.coerced(t), arithmetic)
-        out, work, rods = np.empty(n, dtype=object), arithmetic.zeros(n, 4), self.rods_in(arithmetic)
+        rods, joints = constants or (self.rods_in(arithmetic), self.joints_in(arithmetic))
+        ax, ay = pull or self.pull(arithmetic.coerced(t), arithmetic)
+        out, work = np.empty(n, dtype=object), arithmetic.zeros(n, 4)
         if self.model == "bobs":
             ratios = [0 * rods[0, 0], *(rods[1:, 0] / rods[:-1, 0])]
             bobs = np.stack([rods[:, 0], rods[:, 1], np.array(ratios, dtype=object), 1 / rods[:, 0]], axis=1)
-            accelerate_bobs(bobs, omega * omega, s, c, ax, ay, work, out)
+            accelerate_bobs(bobs, omega * omega, s, c, ax, ay, work, None, out)
         else:
-            tau = _torques(theta, omega, *self.joints_in(arithmetic))
-            accelerate_rods(rods, omega * omega, tau, s, c, ax, ay, work, out)
+            tau = _torques(theta, omega, *joints)
+            accelerate_rods(rods, omega * omega, tau, s, c, ax, ay, work, None, out)
         return out
 
     # -- energy -------------------------------------------------------------------------------------------

@@ -24,6 +24,7 @@ import numpy as np
 from .chain import CompiledChain
 from .digits import Steps
 from .machine import has_numba
+from .pairs import to_pairs
 from .taylor import FACTORS, series_shape
 
 __all__ = ["UNIT", "DoubledSteps", "OutOfRange", "has_doubled"]
@@ -47,13 +48,6 @@ def has_doubled(digits: int) -> bool:
 def _translated(name: str) -> Callable[..., None]:
     found: Callable[..., None] = getattr(import_module(f"{__package__}.pairtype"), name)
     return found
-
-
-def to_pairs(numbers: Any) -> Any:
-    """Balls as pairs, the high half real and the low half imaginary; complex128 of the same shape."""
-    flat = np.asarray(numbers, dtype=object)
-    high = flat.astype(float)
-    return high + 1j * (flat - high).astype(float)
 
 
 def to_balls(pairs: Any) -> Any:

@@ -13,21 +13,23 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines
-from .recursion import force, inertia, torque, turned_force, turned_inertia
+from .recursion import DOUBT, force, inertia, spread, spread_within, torque, turned_force, turned_inertia
 
 __all__ = ["LANES", "accelerate_lanes"]
 
 LANES = 64  # 32 to 128 cost the same up to n = 100; wide rows are kinder to memory at n = 1000
 
 
-def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, out: Any) -> bool:
+def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, doubtful: Any,
+                     out: Any) -> bool:
     """Write ``theta''`` of all chains to ``out``, float64 only; whether all are finite and all angles small enough.
 
-    Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 6 * LANES).  All chains are
+    Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 8 * LANES); doubtful (chains,)
+    or None, written: whether the answer is in doubt.  All chains are
     on one support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
-    held = np.empty(8 * LANES)
+    held = np.empty(10 * LANES)
     wrong = 0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
@@ -65,7 +67,14 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                     o[2 * LANES + j] = (l * qn - t) * l * r
                     g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
                     f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
+                if doubtful is not None:
+                    ll = l * l * r
+                    o[6 * LANES + j] = ll * ll * held[8 * LANES + j] + o[2 * LANES + j] * o[2 * LANES + j]
+                    o[7 * LANES + j] = ll * ll * held[9 * LANES + j]
                 s, c = o[3 * LANES + j], o[4 * LANES + j]
+                if doubtful is not None:
+                    held[9 * LANES + j], held[8 * LANES + j] = spread_within(s, c, a, x, y, f0,
+                                                                             rate[j] * rate[j] * (mH + l * Er))
                 Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
                 f0, f1, f2, f3 = turned_force(s, c, f0, f1, f2, f3)
                 held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j] = Puu, Pun, Pnn, det
@@ -73,6 +82,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 held[6 * LANES + j], held[7 * LANES + j] = f2, f3
         for j in range(width):
             held[j], held[LANES + j] = ay, ax
+        held[2 * LANES:7 * LANES] = 0.0  # the covariance, the largest theta''**2 and the largest variance
         for k in range(n):
             o = work[k]
             l = rods[k, 1]
@@ -81,10 +91,25 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
             for j in range(width):
                 s, c, tu, tn = o[3 * LANES + j], o[4 * LANES + j], held[j], held[LANES + j]
                 au, an = tu * c + tn * s, tn * c - tu * s
-                tu = au - l * rate[j] * rate[j]
+                lz = l * (rate[j] * rate[j])
+                if doubtful is not None:
+                    uu, un, nn, v = spread(s, c, tu, tn, au - lz, lz, o[j], o[LANES + j], o[7 * LANES + j],
+                                           o[6 * LANES + j], held[2 * LANES + j], held[3 * LANES + j],
+                                           held[4 * LANES + j])
+                    v = v * (per_length * per_length)
+                    held[2 * LANES + j], held[3 * LANES + j], held[4 * LANES + j] = uu, un, nn
+                    held[6 * LANES + j] = v if v > held[6 * LANES + j] else held[6 * LANES + j]
+                tu = au - lz
                 tn = o[j] * an - (o[2 * LANES + j] + o[LANES + j] * tu)
                 result[j] = -(o[5 * LANES + j] * an + (o[2 * LANES + j] + o[LANES + j] * tu) * per_length)
                 held[j], held[LANES + j] = tu, tn
+                if doubtful is not None:
+                    v = result[j] * result[j]
+                    held[5 * LANES + j] = v if v > held[5 * LANES + j] else held[5 * LANES + j]
             for j in range(width):
                 wrong += 0.0 * result[j] != 0.0
+        if doubtful is not None:
+            for j in range(width):
+                lost = 0.0 * (held[2 * LANES + j] + held[4 * LANES + j]) != 0.0
+                doubtful[first + j] = lost or held[6 * LANES + j] > DOUBT * DOUBT * held[5 * LANES + j]
     return wrong == 0

@@ -24,11 +24,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from .angles import product
 from .machine import inlined
 from .stepper import total
 
-__all__ = ["added", "divided", "multiplied", "normal", "subtracted", "summed"]
+__all__ = ["added", "divided", "multiplied", "normal", "subtracted", "summed", "to_pairs"]
 
 
 @inlined
@@ -74,3 +76,10 @@ def summed(sh: Any, sl: Any, xh: Any, xl: Any, yh: Any, yl: Any) -> tuple[Any, A
     p, e = product(xh, yh)
     sh, f = total(sh, p)
     return sh, sl + ((e + f) + (xh * yl + xl * yh))
+
+
+def to_pairs(numbers: Any) -> Any:
+    """Balls or mpmath numbers as pairs, the high half real and the low half imaginary; complex128 of the same shape."""
+    flat = np.asarray(numbers, dtype=object)
+    high = flat.astype(float)
+    return high + 1j * (flat - high).astype(float)

@@ -12,19 +12,30 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from math import factorial
 from typing import Any
 
+import numpy as np
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, make_attribute_wrapper, models, overload, register_model
 
-from .angles import product
+from .angles import HALF_1, HALF_2, HALF_3, PER_HALF, ROUND, difference, product
 from .machine import as_written, inlined, stands_in
 from .pairs import added, divided, multiplied, normal, subtracted, summed
+from .recursion import accelerate_rods
 from .stepper import increments
 from .taylor import convolved, expand, factor
 
-__all__ = ["pair_increments", "pair_series"]
+__all__ = ["pair_accelerations", "pair_increments", "pair_series"]
+
+HALF_4 = float.fromhex("0x1.129024e088a68p-123")  # pi/2 = HALF_1 + ... + HALF_4 + O(1e-53)
+# 15! sin(x)/x and 16! cos(x) as polynomials in x**2 have whole coefficients, up to these powers; then floats will do
+SINE = tuple(float((-1) ** k * (factorial(15) // factorial(2 * k + 1))) for k in range(7, 0, -1))
+COSINE = tuple(float((-1) ** k * (factorial(16) // factorial(2 * k))) for k in range(8, 0, -1))
+SIN_UNIT, COS_UNIT = float(factorial(15)), float(factorial(16))
+SINE_TAIL = tuple((-1) ** k * factorial(15) / factorial(2 * k + 1) for k in range(13, 7, -1))
+COSINE_TAIL = tuple((-1) ** k * factorial(16) / factorial(2 * k) for k in range(14, 8, -1))
 
 INLINE = {"forceinline": True, "fastmath": False, "error_model": "numpy"}
 
@@ -169,5 +180,64 @@ def _increments(series: Any, order: Any, h: Any, l: Any, out: Any) -> None:
         y[0, k], y[1, k] = increments(x, k, order, pair(h, l))
 
 
+def pair_sines(d: Any, e: Any) -> tuple[Any, Any]:
+    """``sin(d + e), cos(d + e)`` to 31 digits, d and e as for :func:`lagrangian.angles.sines`.
+
+    Beyond degree 16 the terms are below 1e-14, and float64 has their digits.
+    """
+    n = (d * PER_HALF + ROUND) - ROUND
+    r = pair(d, e) - n * HALF_1 - n * HALF_2 - pair(HALF_3, HALF_4) * n
+    z = r * r
+    a, b = 0.0, 0.0
+    for x in SINE_TAIL:
+        a = a * z.h + x
+    for x in COSINE_TAIL:
+        b = b * z.h + x
+    p, q = z * a, z * b
+    for x in SINE:
+        p = (p + x) * z
+    for x in COSINE:
+        q = (q + x) * z
+    s, c = r + r * (p / SIN_UNIT), q / COS_UNIT + 1.0
+    quarter = n - 4.0 * ((0.25 * n + ROUND) - ROUND)  # n mod 4, between -2 and 2
+    if quarter == 1.0 or quarter == -1.0:
+        s, c = c, -s
+    if quarter == 2.0 or quarter == -2.0 or quarter == -1.0:
+        s, c = -s, -c
+    return s, c
+
+
+def _accelerations(rods: Any, damping: Any, springs: Any, theta: Any, omega: Any, ax: Any, ay: Any, out: Any) -> None:
+    """:func:`lagrangian.recursion.accelerate_rods` on pairs for float64 states, shape (n, chains), as is out."""
+    n = theta.shape[0]
+    constants, pull = pairs(rods), pairs(np.array([ax, ay]))
+    space = pairs(np.zeros((9, n), np.complex128))
+    s, c, z, tau, found = space[0], space[1], space[2], space[3], space[4]
+    work = pairs(np.zeros((n, 4), np.complex128))
+    for j in range(theta.shape[1]):
+        moment = pair(0.0, 0.0)
+        for i in range(n):
+            k = n - 1 - i
+            before, rate = (theta[k - 1, j], omega[k - 1, j]) if k > 0 else (0.0, 0.0)
+            d, e = difference(theta[k, j], before)
+            s[k], c[k] = pair_sines(d, e)
+            z[k] = pair(omega[k, j], 0.0) * omega[k, j]
+            tau[k] = moment
+            if damping is not None or springs is not None:
+                moment = pair(0.0, 0.0)
+                if damping is not None:
+                    moment = moment + pairs(damping)[k] * (pair(omega[k, j], 0.0) - rate)
+                if springs is not None:
+                    moment = moment + pairs(springs)[k] * pair(d, e)
+                tau[k] = tau[k] - moment
+        if damping is not None or springs is not None:
+            accelerate_rods(constants, z, tau, s, c, pull[0], pull[1], work, None, found)
+        else:
+            accelerate_rods(constants, z, None, s, c, pull[0], pull[1], work, None, found)
+        for k in range(n):
+            out[k, j] = found[k].h
+
+
+pair_accelerations = as_written(_accelerations, OPERATIONS)
 pair_series = as_written(_series, OPERATIONS)
 pair_increments = as_written(_increments, OPERATIONS)

@@ -1,4 +1,4 @@
-r"""Accelerations of a chain in one pass from tip to base and one back: O(n), and no subtraction of like numbers.
+r"""Accelerations of a chain in one pass from tip to base and one back: O(n), and an estimate of what rounding took.
 
 Everything beyond the far end of rod k acts on it as a force ``P a + q``, linear in the acceleration ``a`` of
 that end (gravity included).  In the rod's own axes, u along it and n across, with the constants of the rod
@@ -29,6 +29,25 @@ whose pivots are ``(1 + rho_k)/m_k`` without subtraction, and
     rho_1 = 0,   rho_k = (m_k/m_(k-1)) (s_k**2 + rho_(k-1))/(1 + rho_(k-1))
     l_k theta_k'' = T_(k+1) s_(k+1)/m_k - T_(k-1) s_k/m_(k-1),   less alpha_n for k = 1.
 
+**Doubt.**  P is a sum of positive terms, but forces and accelerations have the signs of the motion, and their sums
+cancel.  Three things lose digits: light rods before a heavy end, where ``w1 = l**2 Pun/D`` grows to the root of the
+ratio of masses and a rounding of tu comes back so many times larger; short rods beyond long ones, which divide by
+their length what the long ones leave of each other; and motions whose accelerations are all small beside
+``theta'**2``.  How much, the same pass can tell.  Let every signed sum be wrong by u = 2**-53 of each of its terms,
+independently.  Then variances, in units of u**2, add.  With ``qu' = A - b`` the two parts of qu' above, the turn leaves
+
+    var Pun = (Puu p q)**2 + (s c Delta/Puu)**2, p and q the components of v,   var qn = qn**2 + s**2 (qu'**2 + b**2)
+
+and on the way back, with ``w0 = J/D``, ``w1`` and ``w2 = l**2 qn/D``, the covariance C of the errors of ``(tu, tn)``
+follows the linear map that the pair itself follows,
+
+    C <- T (C + diag(tu**2, tn**2)) T^T + (what l z, w1 and w2 add),   T = [[1, 0], [-w1, w0]] [[c, s], [-s, c]],
+
+so that errors which belong together stay together, and the estimate does not grow from rod to rod as balls do.  The
+root of the largest variance of a theta'' over the largest theta'' is the *doubt*.  In 40 000 random chains the error
+was at most seven times the doubt.  An answer in more doubt than DOUBT is found again with twice the digits
+(:mod:`lagrangian.redone`).  Tensions of bobs have a doubt by the same rule.
+
 The functions are plain Python.  What is passed decides the arithmetic: float64 after translation
 (:mod:`lagrangian.machine`), NumPy rows (one entry a chain), mpmath numbers, python-flint balls.
 Both forms were checked against the dense equations at 50 digits.
@@ -40,7 +59,10 @@ from typing import Any
 
 from .machine import inlined
 
-__all__ = ["accelerate_bobs", "accelerate_rods", "force", "inertia", "turned_force", "turned_inertia"]
+__all__ = ["DOUBT", "accelerate_bobs", "accelerate_rods", "force", "inertia", "spread", "spread_within", "torque",
+           "turned_force", "turned_inertia"]
+
+DOUBT = 7.0  # units of 2**-53, normwise: 4e-15 is 36
 
 
 @inlined
@@ -87,13 +109,40 @@ def turned_force(s: Any, c: Any, qu: Any, qn: Any, ku: Any, kn: Any) -> Any:
     return qu * c - qn * s, qu * s + qn * c, ku * c - kn * s, ku * s + kn * c
 
 
-def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:
+@inlined
+def spread_within(s: Any, c: Any, a: Any, x: Any, y: Any, f0: Any, b: Any) -> Any:
+    """The variances of ``Pun`` and, beside its own size, of ``qn``, after the turn; ``f0 = qu' = A - b``."""
+    u, v, w = a * (c - x * s) * (s + x * c), y * s * c, s * s
+    return u * u + v * v, (f0 * f0 + b * b) * w
+
+
+@inlined
+def spread(s: Any, c: Any, tu: Any, tn: Any, ahead: Any, lz: Any, w0: Any, w1: Any, v1: Any, v2: Any, uu: Any, un: Any,
+           nn: Any) -> Any:
+    """The covariance ``uu, un, nn`` of ``(tu, tn)`` taken over a rod, and the variance of its ``l theta''``.
+
+    ``tu, tn`` are before, ``ahead`` is tu after the rod; ``v1, v2`` are the variances of ``w1, w2``.
+    """
+    uu, nn = uu + tu * tu, nn + tn * tn
+    x, y = uu * c + un * s, un * c + nn * s
+    duu, dun = x * c + y * s, y * c - x * s
+    dnn = (uu + nn) - duu
+    duu = duu + lz * lz
+    un, g = w0 * dun - w1 * duu, w0 * dnn - w1 * dun
+    nn = (w0 * g - w1 * un) + (v1 * (ahead * ahead) + v2)
+    return duu, un, nn, (nn - g) + (dnn - g)
+
+
+def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, doubt: Any,
+                    out: Any) -> None:
     """Write ``theta''`` of physical rods to ``out``.
 
     Shapes: rods (n, 8), rows ``m, l, I, Ic, J, It, m H, m (l - H)``; z, s, c, out (n,); work (n, 4); tau (n,) or
-    None, the torque on each rod; ``(ax, ay)`` the acceleration of the support, with g added to ay.
+    None, the torque on each rod; ``(ax, ay)`` the acceleration of the support, with g added to ay; doubt (2, n) or
+    None, in its row 0 the variance of each ``theta''``, written.
     """
     n = rods.shape[0]
+    Vp = Vq = 0 * z[n - 1]
     Puu = Pun = Pnn = Delta = qu = qn = ku = kn = 0 * z[n - 1]
     for i in range(n):
         k = n - 1 - i
@@ -111,42 +160,73 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
             work[k, 2] = (l * qn - t) * l * r
             g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
             f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
+        if doubt is not None:
+            ll = l * l * r
+            doubt[0, k], doubt[1, k] = ll * ll * Vq + work[k, 2] * work[k, 2], ll * ll * Vp
+            Vp, Vq = spread_within(s[k], c[k], a, x, y, f0, z[k] * (mH + l * Er))
         Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
         Delta = det
         qu, qn, ku, kn = turned_force(s[k], c[k], f0, f1, f2, f3)
     tu, tn = ay, ax
+    uu = un = nn = 0 * z[0]
     for k in range(n):
         l = rods[k, 1]
+        per = 1 / l
         au, an = tu * c[k] + tn * s[k], tn * c[k] - tu * s[k]
-        tu = au - l * z[k]
+        lz = l * z[k]
+        if doubt is not None:
+            uu, un, nn, v = spread(s[k], c[k], tu, tn, au - lz, lz, work[k, 0], work[k, 1], doubt[1, k], doubt[0, k],
+                                   uu, un, nn)
+            doubt[0, k] = v * (per * per)
+        tu = au - lz
         tn = work[k, 0] * an - work[k, 2] - work[k, 1] * tu
-        out[k] = -(work[k, 3] * an + (work[k, 2] + work[k, 1] * tu) / l)
+        out[k] = -(work[k, 3] * an + (work[k, 2] + work[k, 1] * tu) * per)
 
 
-def accelerate_bobs(bobs: Any, z: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, out: Any) -> None:
+def accelerate_bobs(bobs: Any, z: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, doubt: Any, out: Any) -> None:
     """Write ``theta''`` of point masses on massless rods to ``out``; no torques.
 
     Shapes: bobs (n, 4), rows ``m, l, m_k/m_(k-1) (0 for k = 1), 1/m``; z, s, c, out (n,); work (n, 2); the rest
     as for :func:`accelerate_rods`.
     """
     n = bobs.shape[0]
-    y = bobs[0, 1] * z[0] - (ax * s[0] + ay * c[0])
+    a, b, d = bobs[0, 1] * z[0], ax * s[0], ay * c[0]
+    y = a - (b + d)
+    loose = a * a + b * b + d * d
     rho = 0 * z[0]
     work[0, 0], work[0, 1] = y, 1 / (1 + rho)
+    if doubt is not None:
+        doubt[0] = loose
     for k in range(1, n):
         h = work[k - 1, 1]
-        y = bobs[k, 1] * z[k] + c[k] * y * h
+        a, d = bobs[k, 1] * z[k], c[k] * h
+        b = d * y
+        y = a + b
         rho = bobs[k, 2] * (s[k] * s[k] + rho) * h
         work[k, 0], work[k, 1] = y, 1 / (1 + rho)
-    T = cT = 0 * z[0]
-    beyond = T
+        if doubt is not None:
+            loose = d * d * loose + (a * a + b * b)
+            doubt[k] = loose
+    T = cT = beyond = loose_c = loose_s = 0 * z[0]
     for i in range(n):
         k = n - 1 - i
-        T = (bobs[k, 0] * work[k, 0] + cT) * work[k, 1]
+        a, h, per = bobs[k, 0] * work[k, 0], work[k, 1], bobs[k, 3]
+        T = (a + cT) * h
+        if doubt is not None:
+            loose = (bobs[k, 0] * bobs[k, 0] * doubt[k] + loose_c + (a * a + cT * cT)) * (h * h)
+            doubt[k] = per * per * (loose_s + beyond * beyond)
+            loose_c, loose_s = c[k] * c[k] * loose, s[k] * s[k] * loose
         if k + 1 < n:
             # theta'' of the rod beyond needs the tension on this side of it
-            out[k + 1] = (out[k + 1] - T * s[k + 1] * bobs[k, 3]) / bobs[k + 1, 1]
-        out[k] = beyond * bobs[k, 3]
+            d = T * s[k + 1] * per
+            out[k + 1] = (out[k + 1] - d) / bobs[k + 1, 1]
+            if doubt is not None:
+                a = s[k + 1] * per
+                doubt[k + 1] = (doubt[k + 1] + d * d + a * a * loose) / (bobs[k + 1, 1] * bobs[k + 1, 1])
+        out[k] = beyond * per
         cT = c[k] * T
         beyond = T * s[k]
-    out[0] = (out[0] - (ax * c[0] - ay * s[0])) / bobs[0, 1]
+    a, b = ax * c[0], ay * s[0]
+    out[0] = (out[0] - (a - b)) / bobs[0, 1]
+    if doubt is not None:
+        doubt[0] = (doubt[0] + (a * a + b * b)) / (bobs[0, 1] * bobs[0, 1])

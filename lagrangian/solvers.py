@@ -58,7 +58,7 @@ def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
         cosine, sine = heyoka.cos(q * heyoka.time), heyoka.sin(q * heyoka.time)
         ax, ay = ax + cx * cosine + sx * sine, ay + cy * cosine + sy * sine
     out, work = np.empty(n, dtype=object), np.empty((n, 4), dtype=object)
-    accelerate_rods(chain.rods, omega * omega, chain.torques(theta, omega), s, c, ax, chain.up * ay, work, out)
+    accelerate_rods(chain.rods, omega * omega, chain.torques(theta, omega), s, c, ax, chain.up * ay, work, None, out)
     return [*zip(theta, omega, strict=True), *zip(omega, out, strict=True)]
 
 
