@@ -68,7 +68,7 @@ class CompiledChain:
     Floats are taken as the exact numbers they are, SymPy numbers and fractions too.  Accelerations in float64 round:
     within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart.  Where float64 leaves that in doubt, at one
     ordinary state in some hundreds and at one in fifteen of such chains, the same recursion runs again with 31 digits
-    or more.  Not asked are many chains at once whose rods are even (masses and lengths within a factor 100): at one
+    or more.  Not asked are many chains at once whose rods are even (masses and lengths within a factor 10): at one
     random state in 10**4 they are beyond 4e-15, and 1e-14 was seen.
 
     Raises
@@ -241,9 +241,9 @@ class CompiledChain:
 
     @cached_property
     def _even(self) -> bool:
-        """Whether masses, and lengths, are within a factor 100 of each other, and no rod is a tenth as wide as long."""
+        """Whether masses, and lengths, are within a factor 10 of each other, and no rod is a tenth as wide as long."""
         m, l, I = self.rods[:, :3].T
-        return bool(m.max() <= 100 * m.min() and l.max() <= 100 * l.min() and (m * l * l <= 100 * I).all())
+        return bool(m.max() <= 10 * m.min() and l.max() <= 10 * l.min() and (m * l * l <= 100 * I).all())
 
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n, chains) from exact numbers, rounded once."""
