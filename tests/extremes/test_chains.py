@@ -1,5 +1,7 @@
 """Chains where digits are lost: masses 1e12 apart, rods in line, huge rates and angles, a thousand rods, long times."""
 
+import pickle
+
 import flint
 import mpmath
 import numpy as np
@@ -148,6 +150,15 @@ def skipped(seed):
     rng = np.random.default_rng(seed)
     rng.integers(1, 13)
     return rng
+
+
+def test_a_chain_that_was_in_doubt_still_travels():
+    """Pickled after its constants were formed anew, it gives the same accelerations."""
+    m, l, H, R, *state = seeded(3620)
+    chain = CompiledChain(m, l, H, R)
+    found = chain.acceleration(0, *state)
+
+    assert (pickle.loads(pickle.dumps(chain)).acceleration(0, *state) == found).all()
 
 
 @pytest.mark.parametrize("size", [1.0, 1e7])
