@@ -234,7 +234,7 @@ class CompiledChain:
         done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
         if not done:
             raise QuantityError(_no_answer(t, theta, omega))
-        if doubtful if theta.ndim == 1 else np.any(doubtful):
+        if doubtful is not False and np.any(doubtful):
             n, doubtful = len(self), np.atleast_1d(doubtful)
             out.reshape(n, -1)[:, doubtful] = self._again(t, *(x.reshape(n, -1)[:, doubtful] for x in (theta, omega)))
         return out
@@ -301,7 +301,7 @@ class CompiledChain:
             doubtful = None if self._even else np.empty(theta.shape[1], bool)
             work = np.empty((n, (6 if self._even else 8) * LANES))
             if machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, doubtful, out):
-                return True, doubtful
+                return True, False if doubtful is None else doubtful
         s, c = np.empty_like(theta), np.empty_like(theta)
         doubt = np.empty((2, *theta.shape))
         with np.errstate(all="ignore"):
