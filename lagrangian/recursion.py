@@ -44,9 +44,9 @@ follows the linear map that the pair itself follows,
     C <- T (C + diag(tu**2, tn**2)) T^T + (what l z, w1 and w2 add),   T = [[1, 0], [-w1, w0]] [[c, s], [-s, c]],
 
 so that errors which belong together stay together, and the estimate does not grow from rod to rod as balls do.  The
-root of the largest variance of a theta'' over the largest theta'' is the *doubt*.  In 40 000 random chains the error
-was at most seven times the doubt.  An answer in more doubt than DOUBT is found again with twice the digits
-(:mod:`lagrangian.redone`).  Tensions of bobs have a doubt by the same rule.
+root of the largest variance of a theta'' over the largest theta'' is the *doubt*, an estimate and no bound.  An answer
+in more doubt than DOUBT is found again with twice the digits (:mod:`lagrangian.redone`); of random hard chains, none
+in less was beyond 4e-15 (``benchmarks/hard_chains.py``).  Tensions of bobs have a doubt by the same rule.
 
 The functions are plain Python.  What is passed decides the arithmetic: float64 after translation
 (:mod:`lagrangian.machine`), NumPy rows (one entry a chain), mpmath numbers, python-flint balls.
