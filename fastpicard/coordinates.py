@@ -8,11 +8,11 @@ addition.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import lcm, prod
+from math import lcm
 from typing import Any
 
 from flint import fmpq
@@ -97,28 +97,22 @@ def _quotient(x: int, d: int) -> Any:
 class Problem:
     """``x' = P x`` with the columns ``x(0)``, packed.
 
-    Parameters are measured in units, too: where ``P`` holds ``-b cos``, of which
-    a product to sum takes half, ``-b/2`` is the parameter, and its coefficient 1.
-
     Attributes
     ----------
-    weights : fmpq for each generator               its unit
     rows : ((j, (Term, ...)), ...) for each row     the nonzero entries of ``P / w``; the coefficients of sines and
                                                   cosines are halved, as products to sums need them
     start : columns of (Term, ...)                the entries of ``x(0)``
     """
 
     coordinates: Coordinates
-    weights: tuple[Any, ...]
     rows: tuple[Row, ...]
     start: tuple[tuple[tuple[Term, ...], ...], ...]
 
     def monomial(self, packed: int) -> tuple[Any, Monomial]:
-        """A packed monomial as a number times a monomial: the units of its generators are put in."""
+        """A packed monomial as a number times a monomial: relations such as ``sqrt(2)**2 = 2`` are applied."""
         found = self._monomials.get(packed)
         if found is None:
-            factor, monomial = multiply_monomials(ONE, self.coordinates.monomial(packed))
-            found = self._monomials[packed] = factor * _weight(self.coordinates, self.weights, packed), monomial
+            found = self._monomials[packed] = multiply_monomials(ONE, self.coordinates.monomial(packed))
         return found
 
     def angle(self, packed: int) -> tuple[bool, Angle]:
@@ -137,10 +131,6 @@ class Problem:
         return {}
 
 
-def _weight(coordinates: Coordinates, weights: tuple[Any, ...], packed: int) -> Any:
-    return prod((w**e for w, e in zip(weights, unpack(packed, len(weights)), strict=True) if w != 1), start=fmpq(1))
-
-
 # -- setting up --------------------------------------------------------------
 
 
@@ -153,26 +143,10 @@ def problem(matrix: Sequence[Sequence[Modes]], start: Sequence[Sequence[Modes]])
         return None
     gained, per_unit = multiply_monomials(ONE, tuple((g, -e) for g, e in coordinates.unit[0]))
     factor = gained / coordinates.unit[1]
-    rows = [[(j, [_halved(term) for term in _terms(modes, coordinates, per_unit, factor)])
-             for j, modes in enumerate(row) if modes] for row in matrix]
-    weights = _weights(coordinates, [term for row in rows for _, terms in row for term in terms])
-
-    def weighted(terms: Iterable[Term]) -> tuple[Term, ...]:
-        return tuple((kind, k, m, c / _weight(coordinates, weights, m)) for kind, k, m, c in terms)
-
-    return Problem(coordinates, weights,
-                   tuple(tuple((j, weighted(terms)) for j, terms in row) for row in rows),
-                   tuple(tuple(weighted(_terms(modes, coordinates, ONE, 1)) for modes in column) for column in start))
-
-
-def _weights(coordinates: Coordinates, terms: list[Term]) -> tuple[Any, ...]:
-    """For each generator the first coefficient with which it stands alone."""
-    first: dict[int, Any] = {}
-    for _, _, monomial, c in terms:
-        first.setdefault(monomial, c)
-    count = len(coordinates.generators)
-    alone = [pack([int(i == j) for j in range(count)]) for i in range(count)]
-    return tuple(first.get(monomial, fmpq(1)) for monomial in alone)
+    rows = tuple(tuple((j, tuple(_halved(term) for term in _terms(modes, coordinates, per_unit, factor)))
+                       for j, modes in enumerate(row) if modes) for row in matrix)
+    return Problem(coordinates, rows, tuple(tuple(_terms(modes, coordinates, ONE, 1) for modes in column)
+                                            for column in start))
 
 
 def _halved(term: Term) -> Term:

@@ -9,30 +9,45 @@ rows, and integration ``q G_r = f_r + G_{r+1}`` is one exact division,
 
     G = quotient of  x f(x)  by  q x - 1,
 
-all of it inside python-flint.  Rows are reduced fractions over one denominator.
-Where that grows long, the denominators of all rows of one monomial, which are
-nearly the same, are cleared together: sums then need no common divisors.
+all of it inside python-flint.  Two integrals are one division too, of ``x**2 f(x)``
+by ``-(q x - 1)**2``, and differentiation is a product, ``(1 - q x) G / x``.  So
+where a row of ``P`` is constant, as in ``x_0' = x_1``, and commutes with the integral,
+``P I_k`` is integrated twice for ``x_1``: that is the increment of ``x_0`` after the
+next, and its derivative, formed only when asked for, the next one of ``x_1``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from math import gcd, lcm
 from typing import Any
 
-from flint import fmpq_poly, fmpz
+from flint import fmpq, fmpq_poly, fmpz
 
 from fastpicard.coordinates import Problem, Row, Term
 from fastpicard.modes import COS, SIN, Modes, mask
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
 Rows = dict[tuple[int, int], Any]  # (kind, angle) -> fmpq_poly
-Entry = dict[int, tuple[Any, Rows]]  # monomial -> (scale, rows times scale)
-Source = tuple[Any, Rows, Term]  # scale, rows, term of P
-
-LONG = 400  # bits of a denominator beyond which it is cleared
+Entry = dict[int, Rows]  # monomial -> rows
 
 _FLIP = fmpq_poly([0, -1])
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of an increment: its entries, or their integrals, of which they are the derivatives."""
+
+    entries: dict[int, Entry]
+    integrals: dict[int, Entry]
+    divisors: Divisors
+
+    def __getitem__(self, i: int) -> Entry:
+        if i not in self.entries:
+            self.entries[i] = {monomial: _derivative(rows, self.divisors)
+                               for monomial, rows in self.integrals[i].items()}
+        return self.entries[i]
 
 
 @dataclass(frozen=True)
@@ -40,89 +55,108 @@ class Level:
     """The increment ``I_m``: column by column its entries."""
 
     order: int
-    columns: tuple[tuple[Entry, ...], ...]
+    columns: tuple[Column, ...]
 
 
 def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ...]:
     """``I_0 .. I_n``, going on from those already known."""
     result = list(known[:n + 1]) or [first_level(p)]
-    divisors = _Divisors(p)
+    steps = _steps(p)
     while len(result) <= n:
-        result.append(next_level(p, result[-1], divisors))
+        result.append(next_level(result[-1], steps))
     return tuple(result)
 
 
 def first_level(p: Problem) -> Level:
     """``I_0``: the columns ``x(0)``."""
-    return Level(0, tuple(tuple(_constants(terms) for terms in column) for column in p.start))
+    return Level(0, tuple(Column({i: _constants(terms) for i, terms in enumerate(column)}, {}, Divisors(p, 1))
+                          for column in p.start))
 
 
 def _constants(terms: tuple[Term, ...]) -> Entry:
     entry: Entry = {}
     for kind, angle, monomial, c in terms:
-        _add_rows(entry.setdefault(monomial, (fmpz(1), {}))[1], {(kind, angle): fmpq_poly([c])})
+        _add_rows(entry.setdefault(monomial, {}), {(kind, angle): fmpq_poly([c])})
     return entry
 
 
-def next_level(p: Problem, level: Level, divisors: _Divisors) -> Level:
+@dataclass(frozen=True)
+class _Step:
+    """A row of ``P``: unless it is constant, what is common to its coefficients goes into the divisors.
+
+    Attributes
+    ----------
+    once, twice : divisors of one integral and of two; None for ``twice`` where one is needed at a time
+    """
+
+    row: Row
+    constant: bool
+    once: Divisors
+    twice: Divisors | None
+
+
+def _steps(p: Problem) -> list[_Step]:
+    constant = [all(kind == COS and angle == 0 for _, terms in row for kind, angle, _, _ in terms) for row in p.rows]
+    awaited = {j for i, row in enumerate(p.rows) if constant[i] and not any(constant[j] for j, _ in row)
+               for j, _ in row}
+    steps = []
+    for i, row in enumerate(p.rows):
+        common = fmpq(1) if constant[i] else _content([c for _, terms in row for _, _, _, c in terms])
+        row = tuple((j, tuple((kind, k, m, c / common) for kind, k, m, c in terms)) for j, terms in row)
+        steps.append(_Step(row, constant[i], Divisors(p, 1, common),
+                           Divisors(p, 2, common) if i in awaited and not constant[i] else None))
+    return steps
+
+
+def _content(values: list[Any]) -> Any:
+    """The number with the sign of the first of which all are coprime integer multiples."""
+    common = fmpq(gcd(*(int(c.p) for c in values)), lcm(*(int(c.q) for c in values)))
+    return common if values[0] > 0 else -common
+
+
+def next_level(level: Level, steps: list[_Step]) -> Level:
     """``I_{m+1}``, the integral of ``P I_m``."""
-    columns = tuple(tuple(_integrated_product(row, column, divisors) for row in p.rows) for column in level.columns)
-    return Level(level.order + 1, columns)
+    return Level(level.order + 1, tuple(_next_column(column, steps) for column in level.columns))
 
 
-# -- one row of P times one column, integrated --------------------------------
-
-
-def _integrated_product(row: Row, column: tuple[Entry, ...], divisors: _Divisors) -> Entry:
-    sources: dict[int, list[Source]] = {}
-    for j, terms in row:
-        for monomial, (scale, rows) in column[j].items():
-            for term in terms:
-                sources.setdefault(monomial + term[2], []).append((scale, rows, term))
-    result: Entry = {}
-    for monomial, group in sources.items():
-        scale = _lcm(source[0] for source in group)
-        integral = _integral(_product(group, scale), divisors)
-        if integral:
-            result[monomial] = _cleared(scale, integral)
-    return result
-
-
-def _lcm(values: Iterable[Any]) -> Any:
-    result = fmpz(1)
-    for value in values:
-        if value != result:
-            result = result // result.gcd(value) * value
-    return result
-
-
-def _cleared(scale: Any, rows: Rows) -> tuple[Any, Rows]:
-    """The rows with their denominators cleared, where these are long and nearly the same."""
-    longest = max(row.denom().bit_length() for row in rows.values())
-    if longest < LONG:
-        return scale, rows
-    common = fmpz(1)
-    for row in rows.values():
-        common = _lcm((common, row.denom()))
-        if common.bit_length() > 1.5 * longest:
-            return scale, rows
-    return scale * common, {key: row * common for key, row in rows.items()}
-
-
-def _product(group: list[Source], scale: Any) -> Rows:
-    """The rows of one monomial of the product."""
-    target: Rows = {}
-    for own_scale, rows, (other, k, _, c) in group:
-        factor = c * (scale // own_scale)
-        if factor != 1:
-            rows = {key: row * factor for key, row in rows.items()}
-        if k and other == COS:
-            _multiply_cosine(target, rows, k)
-        elif other == COS:
-            _add_rows(target, rows)
+def _next_column(column: Column, steps: list[_Step]) -> Column:
+    entries: dict[int, Entry] = {}
+    integrals: dict[int, Entry] = {}
+    for i, step in enumerate(steps):
+        if step.twice is not None:
+            integrals[i] = _integral(_product(step.row, column), step.twice)
+        elif step.constant and all(j in column.integrals for j, _ in step.row):
+            entries[i] = _product(step.row, column.integrals)
         else:
-            _multiply_sine(target, rows, k)
-    return target
+            entries[i] = _integral(_product(step.row, column), step.once)
+    return Column(entries, integrals, column.divisors)
+
+
+# -- one row of P times one column --------------------------------------------
+
+
+def _product(row: Row, column: Column | Mapping[int, Entry]) -> Entry:
+    result: Entry = {}
+    for j, terms in row:
+        for monomial, rows in column[j].items():
+            for kind, k, own, c in terms:
+                target = result.setdefault(monomial + own, {})
+                scaled = rows if c == 1 else _multiple(rows, c)
+                if kind != COS:
+                    _multiply_sine(target, scaled, k)
+                elif k:
+                    _multiply_cosine(target, scaled, k)
+                elif target:
+                    _add_rows(target, scaled)
+                else:
+                    target.update(scaled)
+    return result
+
+
+def _multiple(rows: Rows, c: int) -> Rows:
+    if c == 2:
+        return {key: row + row for key, row in rows.items()}
+    return {key: row * c for key, row in rows.items()}
 
 
 def _add_rows(target: Rows, rows: Rows) -> None:
@@ -141,10 +175,12 @@ def _multiply_cosine(target: Rows, rows: Rows, k: int) -> None:
             lower, below = angle - k, row
             if lower < 0:
                 lower, below = -lower, reflected(kind, row)
-            old = get((kind, lower))
-            target[kind, lower] = below if old is None else old + below
-        old = get((kind, angle + k))
-        target[kind, angle + k] = row if old is None else old + row
+            key = kind, lower
+            old = get(key)
+            target[key] = below if old is None else old + below
+        key = kind, angle + k
+        old = get(key)
+        target[key] = row if old is None else old + row
 
 
 def _multiply_sine(target: Rows, rows: Rows, k: int) -> None:
@@ -163,45 +199,76 @@ def reflected(kind: int, row: Any) -> Any:
     return row(_FLIP) if kind == COS else -row(_FLIP)
 
 
-class _Divisors:
-    """The polynomials ``q x - 1`` of the packed angles of one problem, ``1 - q x`` for sines."""
+# -- calculus -----------------------------------------------------------------
 
-    def __init__(self, p: Problem) -> None:
-        self.coordinates = p.coordinates
-        self.known: dict[tuple[int, int], tuple[Any, int]] = {}
 
-    def of(self, key: tuple[int, int]) -> tuple[Any, int]:
-        """``(divisor, the angle at time 0)``; None for the divisor where ``q = 0``."""
-        found = self.known.get(key)
-        if found is None:
-            kind, angle = key
-            q = self.coordinates.frequency(angle)
-            divisor = fmpq_poly([-1, q] if kind == COS else [1, -q]) if q else None
-            found = self.known[key] = divisor, self.coordinates.without_frequency(angle)
+class Divisors(dict[tuple[int, int], Any]):
+    """For kinds and packed angles ``(divisor, kind and angle of the integral, q, the angle at time 0)``.
+
+    The divisors are ``q x - 1`` of cosines, ``1 - q x`` of sines, for two integrals the product of both; where the
+    integrand has the number ``common`` as a factor, over it.
+    """
+
+    def __init__(self, p: Problem, times: int, common: Any = 1) -> None:
+        self.coordinates, self.times, self.common = p.coordinates, times, common
+
+    def __missing__(self, key: tuple[int, int]) -> tuple[Any, tuple[int, int], int, int]:
+        kind, angle = key
+        q = self.coordinates.frequency(angle)
+        cosine, sine = fmpq_poly([-1, q]), fmpq_poly([1, -q])
+        divisor = cosine * sine if self.times == 2 else cosine if kind == COS else sine
+        target = key if self.times == 2 else (1 - kind, angle)
+        found = self[key] = divisor / self.common, target, q, self.coordinates.without_frequency(angle)
         return found
 
 
-def _integral(product: Rows, divisors: _Divisors) -> Rows:
-    """The antiderivative that is zero at 0, row by row."""
+def _integral(product: Entry, divisors: Divisors) -> Entry:
+    """The antiderivative that is zero at 0, and its derivative too, if it is the second one."""
+    found = {monomial: _integrated(rows, divisors) for monomial, rows in product.items()}
+    return {monomial: rows for monomial, rows in found.items() if rows}
+
+
+def _integrated(rows: Rows, divisors: Divisors) -> Rows:
     result: Rows = {}
-    constants: dict[int, Any] = {}
-    for key, row in product.items():
-        kind, angle = key
-        divisor, start = divisors.of(key)
-        if angle == 0:
-            row = mask(kind, row)
+    starts: dict[tuple[int, int, int], list[tuple[Any, Any]]] = {}
+    times = divisors.times
+    for key, row in rows.items():
+        if key[1] == 0:
+            row = mask(key[0], row)
         if not row:
             continue
-        if divisor is None:
-            _add_rows(result, {(1 - kind, angle): row.left_shift(1) * (-1 if kind == COS else 1)})
+        divisor, target, q, start = divisors[key]
+        row = row.left_shift(times) // divisor
+        if not q:
+            _add_rows(result, {target: row})
             continue
-        row = row.left_shift(1) // divisor
-        result[1 - kind, angle] = row
-        if kind != COS:
-            constants[abs(start)] = constants.get(abs(start), 0) - row[0]
-        elif start:
-            _add_rows(result, {(SIN, abs(start)): fmpq_poly([-row[0] if start > 0 else row[0]])})
-    _add_rows(result, {(COS, start): fmpq_poly([value]) for start, value in constants.items()})
+        result[target] = row
+        kind, number, denominator = target[0], row.numer(), row.denom()
+        if start or kind == COS:
+            starts.setdefault((kind, start, 0), []).append((-number[0], denominator))
+        if times == 2 and (start or kind == SIN):
+            starts.setdefault((kind, start, 1), []).append((q * number[0] - number[1], denominator))
+    for (kind, start, r), fractions in starts.items():
+        row = fmpq_poly([0] * r + [_sum(fractions)])
+        _add_rows(result, {(kind, abs(start)): row if start >= 0 else reflected(kind, row)})
+    return result
+
+
+def _sum(fractions: list[tuple[Any, Any]]) -> Any:
+    """The sum of fractions whose denominators are nearly the same."""
+    common = fmpz(1)
+    for _, denominator in fractions:
+        if common % denominator:
+            common = common.lcm(denominator)
+    return fmpq(sum(numerator * (common // denominator) for numerator, denominator in fractions), common)
+
+
+def _derivative(rows: Rows, divisors: Divisors) -> Rows:
+    """The inverse of integration: ``(1 - q x) G / x``."""
+    result: Rows = {}
+    for (kind, angle), row in rows.items():
+        key = 1 - kind, angle
+        result[key] = (row * divisors[key][0]).right_shift(1)
     return result
 
 
@@ -216,7 +283,7 @@ def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
     """
     result: Entry = {}
     start_of = p.coordinates.without_frequency if p.coordinates.phases else _nowhere
-    for monomial, (scale, rows) in entry.items():
+    for monomial, rows in entry.items():
         collapsed: Rows = {}
         for (kind, angle), row in rows.items():
             start = start_of(angle)
@@ -226,8 +293,8 @@ def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
                 start, row = -start, reflected(kind, row)
             old = collapsed.get((kind, start))
             collapsed[kind, start] = row if old is None else old + row
-        result[monomial] = scale, {(kind, start): row if start else mask(kind, row)
-                                   for (kind, start), row in collapsed.items()}
+        result[monomial] = {(kind, start): row if start else mask(kind, row)
+                            for (kind, start), row in collapsed.items()}
     return result
 
 
@@ -238,28 +305,33 @@ def _nowhere(angle: int) -> int:
 def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
     """The sum of entries of increments as a series in ``t = s / unit``."""
     modes: Modes = {}
-    unit, rate = p.coordinates.unit
-    stretch = None if rate == 1 else fmpq_poly([0, rate])
+    plain = p.coordinates.unit == (ONE, 1)
     for entry in entries:
-        for packed, (scale, rows) in entry.items():
-            weight, monomial = p.monomial(packed)
-            factor = None if weight == scale else weight / scale
+        for packed, rows in entry.items():
+            factor, monomial = p.monomial(packed)
+            if factor != 1:
+                rows = {key: row * factor for key, row in rows.items()}
             for (kind, angle), row in rows.items():
-                if stretch is not None:
-                    row = row(stretch)
-                if factor is not None:
-                    row = row * factor
                 turned, exact = p.angle(angle)
                 if turned:
                     row = reflected(kind, row)
-                for m, f in ((monomial, row),) if unit == ONE else _by_power(row, monomial, unit):
-                    key = (kind, exact, m)
-                    old = modes.setdefault(key, f)
-                    if old is not f:
-                        modes[key] = old + f
+                if not plain:
+                    _add_by_power(modes, kind, exact, monomial, row, p.coordinates.unit)
+                    continue
+                key = kind, exact, monomial
+                old = modes.get(key)
+                modes[key] = row if old is None else old + row
     for key in [key for key, f in modes.items() if not f]:
         del modes[key]
     return modes
+
+
+def _add_by_power(modes: Modes, kind: int, angle: Any, monomial: Monomial, row: Any, unit: Any) -> None:
+    if unit[1] != 1:
+        row = row(fmpq_poly([0, unit[1]]))
+    for m, f in ((monomial, row),) if unit[0] == ONE else _by_power(row, monomial, unit[0]):
+        old = modes.get((kind, angle, m))
+        modes[kind, angle, m] = f if old is None else old + f
 
 
 def _by_power(row: Any, monomial: Monomial, unit: Monomial) -> Iterator[tuple[Monomial, Any]]:

@@ -153,6 +153,34 @@ def test_the_engine_in_integers_agrees_with_the_engine_in_series(P, n):
                 )
 
 
+numbers = st.sampled_from([S.One, S.One, Rational(-2, 3), a, -2 * b])
+constant_rows = st.one_of(
+    st.builds(lambda c, d: {0: [0, c, d]}, numbers, numbers),
+    st.builds(lambda c, d: {0: [0, c, 0], 2: [0, d, 0]}, numbers, numbers),
+    st.builds(lambda c, d: {0: [0, c, 0], 2: [d, 0, 0]}, numbers, numbers),
+    st.builds(lambda c, d: {0: [d, c, 0]}, numbers, numbers),
+)
+
+
+@given(matrices(3, angles=phases), constant_rows, st.integers(0, 3))
+def test_a_row_of_constants_commutes_with_the_integral(P, rows, m):
+    """x_0' = c x_1 + d x_2: integrals found before, and derivatives, against the engine in series; X_n' = P X_(n-1)."""
+    for i, row in rows.items():
+        P[i, :] = [row]
+    system = read_matrix(P, t)
+    packed = first_increments(system, identity_columns(3), m).to_order(3)
+    plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(3)
+
+    assert not isinstance(packed, SeriesIncrements)
+    assert all(
+        PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(plain.entry(k, i, j), t)
+        for k in range(4)
+        for i in range(3)
+        for j in range(3)
+    )
+    assert FundamentalMatrix(P, t, 3).series.diff() == system @ FundamentalMatrix(P, t, 2).series
+
+
 @pytest.mark.parametrize(
     "P",
     [
