@@ -20,12 +20,13 @@ _TINY = 1e-300
 
 @dataclass(frozen=True)
 class Guess:
-    """A float64 guess of the eigenvalue, and the row where its eigenvector is largest."""
+    """A float64 guess of the eigenvalue, the row where its eigenvector is largest, and the slope of ``-g`` there."""
 
     matrix: Matrix
     size: float  # |q|
     eigenvalue: float
     peak: int
+    slope: float
     exponent: int  # the binary digits before the point of the eigenvalue
 
     def section(self, q: Any, bits: int) -> tuple[Section, int]:
@@ -54,10 +55,10 @@ def float_guess(matrix: Matrix, middle: Any) -> Guess:
     near = math.sqrt(largest)  # about the distance of neighbours
     for width in (math.inf, 0.03 * near, 1e-15 * largest):
         first = _bisection(matrix, q, diagonal, couplings, width) if width < math.inf else _expansion(matrix, q)
-        x, peak, index = _newton(diagonal, couplings, first, 1e-8 * near)
+        x, peak, slope, index = _newton(diagonal, couplings, first, 1e-8 * near)
         if index == matrix.index:
             break
-    return Guess(matrix, size, x, peak, math.frexp(max(abs(x), 1e-12 * largest))[1])
+    return Guess(matrix, size, x, peak, slope, math.frexp(max(abs(x), 1e-12 * largest))[1])
 
 
 def _expansion(matrix: Matrix, q: float) -> float:
@@ -85,8 +86,8 @@ def _bisection(matrix: Matrix, q: float, diagonal: list[float], couplings: list[
     return (low + high) / 2
 
 
-def _newton(diagonal: list[float], couplings: list[float], x: float, small: float) -> tuple[float, int, int]:
-    """An eigenvalue near x, the row where its eigenvector is largest, and how many eigenvalues are smaller.
+def _newton(diagonal: list[float], couplings: list[float], x: float, small: float) -> tuple[float, int, float, int]:
+    """An eigenvalue near x, the row where its eigenvector is largest, the slope, and how many eigenvalues are smaller.
 
     ``small`` is far below the distance of eigenvalues: the error after such a step, about its square, is rounding.
     """
@@ -100,7 +101,7 @@ def _newton(diagonal: list[float], couplings: list[float], x: float, small: floa
         x += step
         if abs(step) <= small:
             break
-    return x, peak, sum(pivot < 0 for pivot in (*down[:peak], *up[peak + 1:]))
+    return x, peak, slope, sum(pivot < 0 for pivot in (*down[:peak], *up[peak + 1:]))
 
 
 def _negatives(diagonal: list[float], couplings: list[float], x: float) -> int:

@@ -37,6 +37,9 @@ from typing import Any
 
 from flint import arb, ctx
 
+FLOAT_BITS = 48  # that a guess in float64 has, of the largest entry
+SLOPE_BITS = 36  # and its slope
+
 
 @dataclass(frozen=True)
 class Matrix:
@@ -85,17 +88,16 @@ class Section:
                 return None
         return negatives
 
-    def refine(self, x: float, bits: int, guard: int) -> Any:
-        """Newton's method on ``g``, at twice as many bits from step to step; the last slope serves for half as many."""
-        guess, known, slope = arb(x), 46, None
+    def refine(self, x: float, slope: float | None, bits: int, guard: int) -> Any:
+        """Newton's method on ``g``, twice as many bits a step; by the float64 slope, if any, where two will do."""
+        guess, known = arb(x), FLOAT_BITS
+        if bits > FLOAT_BITS + 2 * SLOPE_BITS:
+            slope = None
         while known < bits:
-            again = slope is None or 1.5 * known - 6 < bits
-            known = min(2 * known - 4, bits)
+            known = min(known + SLOPE_BITS if slope else 2 * known - 4, bits)
             with ctx.workprec(known + guard):
                 down, up, g = self._pivots(guess)
-                if again:
-                    slope = self._slope(down, up)
-                guess = (guess + g / slope).mid()
+                guess = (guess + g / (slope or self._slope(down, up))).mid()
         return guess
 
     def _pivots(self, x: Any) -> tuple[list[Any], list[Any], Any]:
