@@ -265,8 +265,11 @@ loaded = time.perf_counter()
 chain.acceleration(0, [0.1] * 5, [0.0] * 5); first = time.perf_counter()
 simulate(chain, [2] * 5, [0] * 5, [0, 1]); second = time.perf_counter()
 simulate(chain, [2] * 5, [0] * 5, [0, 1], digits=28); third = time.perf_counter()
+heavy = CompiledChain([1.0, 1.0, 1e12], [1.0] * 3, [0.5] * 3, [0.6] * 3)
+heavy.acceleration(0, [0.6, -2.4, 0.3], [-2.6, 1.1, 1.7]); fourth = time.perf_counter()
 print(f"{loaded - start:.2f} s to import, {first - loaded:.2f} s more to the first acceleration, "
-      f"{second - first:.2f} s more to the first motion, {third - second:.2f} s more to one in double-double")
+      f"{second - first:.2f} s more to the first motion, {third - second:.2f} s more to one in double-double, "
+      f"{fourth - third:.2f} s more to an answer in doubt")
 """
 
 

@@ -71,7 +71,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     Speed and accuracy
     ------------------
     Ten seconds from 2 rad: 0.6 ms for two rods (12 digits are left), 2 ms for five (8), 10 ms for ten (2), after a
-    second or two of translation once per machine.  Two rods with 28 digits: 0.12 s, after 6 s of translation; with 50
+    few seconds of translation once per machine.  Two rods with 28 digits: 0.12 s, after 6 s of translation; with 50
     digits 10 s.  A trajectory never claims what it has not: see ``trajectory.error``, ``.predictable_until`` and
     ``.verdict``.
 
