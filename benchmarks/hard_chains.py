@@ -5,12 +5,15 @@
 The chains are those of ``tests/extremes/test_chains.py``, one to twelve rods with gravity.  Beside what
 ``acceleration`` gives stands the recursion in float64 alone, and how many answers it left in doubt, which are found
 again (``lagrangian/redone.py``); for chains of ordinary rods too.  Beside the worst errors stands how far the exact
-answer moves if every number of the chain and its state goes to a next float.
+answer moves if every number of the chain and its state goes to a next float.  Last, what finding again costs.
 """
 
 from __future__ import annotations
 
 import sys
+import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +27,7 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 6000
     report("hard", count, KINDS)
     report("ordinary", count, ["nothing"])
+    costs()
 
 
 def report(name: str, count: int, kinds: list[str]) -> None:
@@ -42,6 +46,30 @@ def report(name: str, count: int, kinds: list[str]) -> None:
     print(f"   in doubt: {sum(x[2] for x in found)}; the worst found:")
     for loss, _, _, kind, n, data, exact in sorted(found, key=lambda x: -x[0])[:4]:
         print(f"   {loss:.1e}, {n} rods, {kind}; the data are worth {moved(data, exact):.1e}")
+
+
+def costs() -> None:
+    print("microseconds a call: even rods, uneven ones, an answer found again")
+    for n, chains in ((3, 1), (10, 1), (100, 1), (1000, 1), (100, 1000)):
+        rng = np.random.default_rng(n)
+        m, l, H, R, *_ = hard_chain("nothing", n, rng)
+        theta, omega = rng.uniform(-3, 3, (n, chains)), rng.normal(size=(n, chains))
+        state = (theta[:, 0], omega[:, 0]) if chains == 1 else (theta, omega)
+        state = tuple(np.ascontiguousarray(x) for x in state)
+        even, uneven = CompiledChain(m, l, H, R), CompiledChain(np.where(np.arange(n) == 0, 100 * m, m), l, H, R)
+        works = (partial(even.acceleration, 0, *state), partial(uneven.acceleration, 0, *state),
+                 partial(uneven._again, 0, theta, omega))
+        print(f"   n = {n}, chains: {chains}: " + ", ".join(f"{least(work):.1f}" for work in works))
+
+
+def least(function: Callable[[], object]) -> float:
+    """Microseconds of one call, the least of thirty."""
+    times = []
+    for _ in range(30):
+        start = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - start)
+    return 1e6 * min(times)
 
 
 if __name__ == "__main__":

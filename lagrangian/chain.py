@@ -38,7 +38,7 @@ from .lanes import LANES, accelerate_lanes
 from .machine import has_numba, machine
 from .quantities import quantity, refuse_text
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
-from .redone import FINE, in_pairs
+from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
 
@@ -82,8 +82,8 @@ class CompiledChain:
 
     Speed and accuracy
     ------------------
-    With numba: 25 to 40 ns a link for one long chain, 8 to 12 ns a link and chain for a thousand chains, a third
-    more where rods are uneven; an answer in doubt costs ten times more, and the first one some seconds of translation.
+    With numba: 25 to 40 ns a link for one long chain, 8 to 15 ns a link and chain for a thousand chains, the more
+    where rods are uneven; an answer in doubt costs 12 to 50 times more, and the first one seconds of translation.
     Without numba the same source runs as Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a
     third slower; such an angle loses nothing as the float that it is, but that float itself knows the angle to 1e-10.
 
@@ -249,12 +249,16 @@ class CompiledChain:
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n, chains) from exact numbers, rounded once."""
         pull = self.pull(t) if self.support.function is not None else self.pull(FINE.coerced(t), FINE)
-        found = in_pairs(*self._fine, pull, theta, omega)
+        found = in_pairs(self._in_pairs, pull, theta, omega)
         if found is None:
             found = np.empty_like(theta)
             for j in range(theta.shape[1]):
                 found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
         return found
+
+    @cached_property
+    def _in_pairs(self) -> Any:
+        return constants_in_pairs(*self._fine)
 
     @cached_property
     def _fine(self) -> tuple[Any, Any]:

@@ -3,8 +3,8 @@ r"""Accelerations that float64 leaves in doubt, once more with twice the digits 
 :mod:`lagrangian.recursion` says of every answer how much of it rounding may have taken.  Where that is too much, one
 random state of an ordinary chain in some hundreds, the same recursion runs again on the exact numbers: constants,
 sines and torques are formed anew, because float64 has rounded them too.  With numba the numbers are pairs of floats,
-31 digits, ten times slower than float64; without it, or where the range of pairs does not suffice, mpmath's of DIGITS
-digits, a thousand times slower.
+31 digits; without it, or where the range of pairs does not suffice, mpmath's of DIGITS digits, far slower still
+(``benchmarks/hard_chains.py`` prints what it costs).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .arithmetic import MPNumbers
 from .machine import has_numba
 from .pairs import to_pairs
 
-__all__ = ["FINE", "in_pairs"]
+__all__ = ["FINE", "constants_in_pairs", "in_pairs"]
 
 DIGITS = 150  # and the products of four floats are exact
 WIDEST = 1e40  # of a constant, and its inverse the smallest: five of them multiplied stay far within float64
@@ -43,18 +43,21 @@ def _translated() -> Callable[..., None]:
     return found
 
 
-def in_pairs(rods: Any, joints: Any, pull: Any, theta: Any, omega: Any) -> Any:
+def constants_in_pairs(rods: Any, joints: Any) -> Any:
+    """Rods, damping and springs, mpmath numbers of FINE, as pairs; None where these have not the range."""
+    rods, *joints = (None if part is None else to_pairs(part) for part in (rods, *joints))
+    size = abs(rods.real[rods.real != 0])
+    return (rods, *joints) if size.max() < WIDEST and size.min() > 1 / WIDEST else None
+
+
+def in_pairs(constants: Any, pull: Any, theta: Any, omega: Any) -> Any:
     """``theta''`` of states (n, chains) in double-double, rounded to float64; None where that has not the range.
 
-    ``rods``, damping and springs in ``joints`` and the two numbers of ``pull`` are mpmath numbers of FINE.
+    ``constants`` are those of :func:`constants_in_pairs`; ``pull`` two numbers of FINE, or floats.
     """
-    if not has_numba() or not abs(theta).max() < 0.5 * LARGEST:
+    if constants is None or not has_numba() or not abs(theta).max() < 0.5 * LARGEST:
         return None
-    rods, (damping, springs), (ax, ay) = to_pairs(rods), joints, to_pairs(pull)
-    size = abs(rods.real[rods.real != 0])
-    if not (size.max() < WIDEST and size.min() > 1 / WIDEST):
-        return None
-    damping, springs = (None if part is None else to_pairs(part) for part in (damping, springs))
+    ax, ay = to_pairs(pull)
     out = np.empty(theta.shape)
-    _translated()(rods, damping, springs, theta, omega, ax, ay, out)
+    _translated()(*constants, theta, omega, ax, ay, out)
     return out if np.isfinite(out).all() else None

@@ -137,6 +137,16 @@ def test_any_way_to_an_order_ends_in_the_same_iterate(P, x0, way):
     assert iterate.as_matrix() == fast_picard(P, t, x0, way[-1]).as_matrix()
 
 
+def same_increments(packed, plain, n, size):
+    """Whether increments in packed integers, and no others, equal those in series up to order n."""
+    return not isinstance(packed, SeriesIncrements) and all(
+        PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(plain.entry(k, i, j), t)
+        for k in range(n + 1)
+        for i in range(size)
+        for j in range(size)
+    )
+
+
 @given(matrices(2), st.integers(0, 4))
 def test_the_engine_in_integers_agrees_with_the_engine_in_series(P, n):
     """Two routes to every increment: packed integers, and products and integrals of series."""
@@ -144,13 +154,7 @@ def test_the_engine_in_integers_agrees_with_the_engine_in_series(P, n):
     packed = first_increments(system, identity_columns(2), n)
     plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(n)
 
-    assert not isinstance(packed, SeriesIncrements)
-    for k in range(n + 1):
-        for i in range(2):
-            for j in range(2):
-                assert PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(
-                    plain.entry(k, i, j), t
-                )
+    assert same_increments(packed, plain, n, 2)
 
 
 numbers = st.sampled_from([S.One, S.One, Rational(-2, 3), a, -2 * b])
@@ -171,13 +175,7 @@ def test_a_row_of_constants_commutes_with_the_integral(P, rows, m):
     packed = first_increments(system, identity_columns(3), m).to_order(3)
     plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(3)
 
-    assert not isinstance(packed, SeriesIncrements)
-    assert all(
-        PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(plain.entry(k, i, j), t)
-        for k in range(4)
-        for i in range(3)
-        for j in range(3)
-    )
+    assert same_increments(packed, plain, 3, 3)
     assert FundamentalMatrix(P, t, 3).series.diff() == system @ FundamentalMatrix(P, t, 2).series
 
 
@@ -200,13 +198,7 @@ def test_both_engines_agree_where_coefficients_are_unusual(P):
     packed = first_increments(system, identity_columns(3), 3)
     plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(3)
 
-    assert not isinstance(packed, SeriesIncrements)
-    assert all(
-        PoissonSeries.from_modes(packed.entry(k, i, j), t) == PoissonSeries.from_modes(plain.entry(k, i, j), t)
-        for k in range(4)
-        for i in range(3)
-        for j in range(3)
-    )
+    assert same_increments(packed, plain, 3, 3)
 
 
 # -- another origin of time ----------------------------------------------------------------
