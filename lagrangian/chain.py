@@ -285,12 +285,12 @@ class CompiledChain:
         if not has_numba():
             return self._many(theta, omega, ax, ay, out)
         space = np.empty(9 * self._count) if self._count < LONG else self._space()
-        asked = True if self._count < LONG_EVEN or not self._even else None
+        unasked = True if self._count >= LONG_EVEN and self._even else None
         if self.model == "bobs":
-            found = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, asked, space, out)
+            found = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, unasked, space, out)
         else:
             tau = self.torques(theta, omega) if self.has_torques else None
-            found = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, asked, space, out)
+            found = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, unasked, space, out)
         if found[0] or large or not abs(theta).max() >= 0.5 * LARGEST:
             return found  # type: ignore[no-any-return]
         return self._one(theta, omega, ax, ay, out, True)

@@ -60,37 +60,37 @@ def judged(out: Any, doubt: Any) -> tuple[bool, bool]:
     return total == 0.0, lost != 0.0 or most > DOUBT * DOUBT * size
 
 
-def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, large: Any, asked: Any, space: Any,
+def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, large: Any, unasked: Any, space: Any,
                 out: Any) -> tuple[bool, bool]:
     """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite and right with these sines; its doubt.
 
-    ``tau`` is (n,) or None; ``large`` None or True, see :func:`joint_sines`; ``asked`` None or True, whether the doubt
-    is; ``space``, (9 n,), is for intermediate values.
+    ``tau`` is (n,) or None; ``large`` None or True, see :func:`joint_sines`; ``unasked`` True where the doubt is not
+    asked, else None, so that the code without it is not translated; ``space``, (9 n,), is for intermediate values.
     """
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:7 * n].reshape(n, 4)
     largest = joint_sines(theta, omega, large, s, c, z)
-    if asked is None:
-        accelerate_rods(rods, z, tau, s, c, ax, ay, work, None, out)
-        done, doubtful = finite(out), False
-    else:
+    if unasked is None:
         doubt = space[7 * n:9 * n].reshape(2, n)
         accelerate_rods(rods, z, tau, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt[0])
+    else:
+        accelerate_rods(rods, z, tau, s, c, ax, ay, work, None, out)
+        done, doubtful = finite(out), False
     return done and (large is not None or largest < 0.5 * LARGEST), doubtful
 
 
-def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: Any, asked: Any, space: Any,
+def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: Any, unasked: Any, space: Any,
                 out: Any) -> tuple[bool, bool]:
     """The same for bobs."""
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:5 * n].reshape(n, 2)
     largest = joint_sines(theta, omega, large, s, c, z)
-    if asked is None:
-        accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
-        done, doubtful = finite(out), False
-    else:
+    if unasked is None:
         doubt = space[5 * n:6 * n]
         accelerate_bobs(bobs, z, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt)
+    else:
+        accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
+        done, doubtful = finite(out), False
     return done and (large is not None or largest < 0.5 * LARGEST), doubtful
