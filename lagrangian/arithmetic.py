@@ -12,9 +12,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import flint
-import mpmath
 import numpy as np
 from sympy import Integer, N, Rational
+
+from .quantities import AnyMpf, real_number
 
 __all__ = ["Arithmetic", "Balls", "MPNumbers", "arithmetic_of"]
 
@@ -28,6 +29,10 @@ class Arithmetic:
 
     def sines(self, x: Any) -> tuple[Any, Any]:
         """``sin x, cos x``."""
+        raise NotImplementedError
+
+    def answers(self, x: Any) -> bool:
+        """Whether ``x`` says anything: it is finite."""
         raise NotImplementedError
 
     def midpoint(self, x: Any) -> Any:
@@ -49,7 +54,7 @@ class Arithmetic:
         return out
 
     def coerced(self, x: Any) -> Any:
-        """A number of any accepted kind in this type."""
+        """A number of any accepted kind in this type; raises as :func:`lagrangian.quantities.quantity`."""
         raise NotImplementedError
 
 
@@ -68,8 +73,13 @@ class MPNumbers(Arithmetic):
         cosine, sine = self.context.cos_sin(x)
         return sine, cosine
 
+    def answers(self, x: Any) -> bool:
+        return bool(self.context.isfinite(x))
+
     def coerced(self, x: Any) -> Any:
-        return self.context.convert(float(x) if isinstance(x, np.floating) else x)
+        if isinstance(x, (float, AnyMpf)):
+            return self.context.convert(x)
+        return self.number(real_number(x, "a number among mpmath's"))
 
 
 @dataclass(frozen=True)
@@ -88,13 +98,16 @@ class Balls(Arithmetic):
         sine, cosine = x.sin_cos()
         return sine, cosine
 
+    def answers(self, x: Any) -> bool:
+        return bool(x.is_finite())
+
     def midpoint(self, x: Any) -> Any:
         return x.mid()
 
     def coerced(self, x: Any) -> Any:
-        if isinstance(x, flint.arb):
-            return x
-        return flint.arb(_dyadic(x._mpf_)) if isinstance(x, mpmath.ctx_mp_python._mpf) else flint.arb(x)
+        if isinstance(x, (flint.arb, flint.fmpq, flint.fmpz)):
+            return flint.arb(x)
+        return self.number(real_number(x, "a number among balls"))
 
 
 def _dyadic(parts: Any) -> Any:
@@ -105,13 +118,23 @@ def _dyadic(parts: Any) -> Any:
 
 def arithmetic_of(*arrays: Any) -> Arithmetic | None:
     """The arithmetic of the numbers given: balls if there is one, else mpmath numbers if there is one, else None."""
-    kinds = {}
+    kinds: dict[type, Any] = {}
     for array in arrays:
-        if isinstance(array, np.ndarray) and array.dtype != object:
-            continue
-        for x in array if isinstance(array, (list, tuple, np.ndarray)) else [array]:
-            kinds[type(x)] = x
+        _note_types(array, kinds)
     if flint.arb in kinds:
         return Balls()
-    contexts = [x.context for x in kinds.values() if isinstance(x, mpmath.ctx_mp_python._mpf)]
+    contexts = [x.context for x in kinds.values() if isinstance(x, AnyMpf)]
     return MPNumbers(contexts[0]) if contexts else None
+
+
+def _note_types(values: Any, kinds: dict[type, Any]) -> None:
+    """A number of every type in an array of objects, in nested lists, or alone."""
+    if isinstance(values, np.ndarray):
+        values = values.ravel().tolist() if values.dtype == object else ()
+    elif not isinstance(values, (list, tuple)):
+        values = (values,)
+    for x in values:
+        if isinstance(x, (list, tuple)):
+            _note_types(x, kinds)
+        else:
+            kinds[type(x)] = x

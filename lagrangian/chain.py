@@ -36,18 +36,19 @@ from .constants import (
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .lanes import LANES, accelerate_lanes
 from .machine import has_numba, machine
-from .quantities import quantity, refuse_text
+from .quantities import quantity, real_number, refuse_text
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
 
-__all__ = ["CompiledChain"]
+__all__ = ["PLAIN_TIMES", "CompiledChain", "float_state"]
 
 MODELS = ("bobs", "rods")
 LONG = 10_000
 LONG_EVEN = 100  # even rods, from which on they are not asked for their doubt
 FLOAT64 = np.dtype(np.float64)
+PLAIN_TIMES = (float, int, np.float64)
 LIGHT = 1e-40  # of the largest mass: stands for no mass, and no float64 result can tell
 
 
@@ -99,7 +100,7 @@ class CompiledChain:
         self._columns = checked(columns)
         self._count = len(self._columns[0])
         self._kept = local()
-        self.gravity = quantity(gravity, "gravity")
+        self.gravity = real_number(gravity, "gravity")
         self.support: Shaking = shaking_of(support_acceleration)
         self._steady = self.support.steady
         self._joints = [joint_constants(values, name, len(self)) for values, name in
@@ -218,18 +219,16 @@ class CompiledChain:
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """
-        if not _is_plain(theta, omega):
-            for value, name in ((t, "t"), (theta, "theta"), (omega, "omega")):
-                refuse_text(value, name)
+        if not _is_plain(theta, omega) or type(t) not in PLAIN_TIMES:
             arithmetic = arithmetic_of(t, theta, omega)
             if arithmetic is not None:
-                return self._in_arithmetic(arithmetic, t, theta, omega)
+                return self._exactly(arithmetic, t, theta, omega)
+            t = t if type(t) in PLAIN_TIMES else to_float(real_number(t, "t"))
         shape = (self._count,)
         if not (_is_plain(theta, omega) and theta.shape == shape == omega.shape and theta.flags.c_contiguous
                 and omega.flags.c_contiguous):
-            theta, omega = _state(theta, "theta", self._count), _state(omega, "omega", self._count)
-            if theta.shape != omega.shape:
-                raise SceneError(f"theta has shape {theta.shape} and omega {omega.shape}: give both the same shape.")
+            theta, omega = float_state(theta, "theta", self._count), float_state(omega, "omega", self._count)
+            _check_same(theta, omega)
         ax, ay = self._steady_pull if self._steady else map(float, self.pull(t))
         out = np.empty_like(theta)
         done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
@@ -319,13 +318,26 @@ class CompiledChain:
         """The torque of dampers and springs on every rod, None where there are none; N m, the shape of theta."""
         return _torques(theta, omega, *self._joint_floats) if self.has_torques else None
 
+    def _exactly(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any) -> Any:
+        """``theta''`` of states (n,) or (n, chains) in another arithmetic."""
+        theta, omega = (np.asarray(x, dtype=object) for x in (theta, omega))
+        _check_same(theta, omega)
+        if len(theta) != len(self) or theta.ndim not in (1, 2):
+            raise SceneError(_wrong_shape("theta", theta.shape, len(self)))
+        out = np.empty(theta.shape, dtype=object)
+        for chain in np.ndindex(theta.shape[1:]):
+            at = (slice(None), *chain)
+            out[at] = self._in_arithmetic(arithmetic, t, theta[at], omega[at])
+        if not all(map(arithmetic.answers, out.flat)):
+            raise QuantityError(f"theta'' is not finite at t = {t}, theta = {theta.tolist()}, omega = "
+                                f"{omega.tolist()}: give finite numbers, or balls that are narrower.")
+        return out
+
     def _in_arithmetic(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any, constants: Any = None,
                        pull: Any = None) -> Any:
         """``constants``: rods and joints, and ``pull``, where they are known already."""
         n = len(self)
         theta, omega = (arithmetic.array(x) for x in (theta, omega))
-        if len(theta) != n or len(omega) != n:
-            raise SceneError(f"the chain has {n} rods, and theta has {len(theta)} and omega {len(omega)} entries.")
         s, c = (np.empty(n, dtype=object) for _ in range(2))
         for k in range(n):
             s[k], c[k] = arithmetic.sines(theta[k] - theta[k - 1] if k else theta[0])
@@ -349,7 +361,8 @@ class CompiledChain:
         Weights are those of gravity and of the constant part of the support's acceleration, and springs are counted.
         A constant of the motion where :attr:`conserves_energy`.  Shapes: (n,) gives a number, (n, any) shape (any,).
         """
-        theta, omega = (_state(x, name, len(self)) for x, name in ((theta, "theta"), (omega, "omega")))
+        theta, omega = (float_state(x, name, len(self)) for x, name in ((theta, "theta"), (omega, "omega")))
+        _check_same(theta, omega)
         shape = (-1,) + (1,) * (theta.ndim - 1)
         m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)
         s, c = np.sin(theta), np.cos(theta)
@@ -396,16 +409,27 @@ def _is_plain(theta: Any, omega: Any) -> bool:
     return type(theta) is np.ndarray is type(omega) and theta.dtype is FLOAT64 is omega.dtype
 
 
-def _state(values: Any, name: str, n: int) -> Any:
+def float_state(values: Any, name: str, n: int) -> Any:
+    """Angles or rates as float64, shape (n,) or (n, chains); raises as :meth:`CompiledChain.acceleration` says."""
+    refuse_text(values, name)
     try:
-        state = np.ascontiguousarray(values, FLOAT64)
-    except (TypeError, ValueError):
-        raise NotAQuantityError(f"{name} is {values!r}: give {n} real numbers, or an array of shape ({n}, chains)."
-                                ) from None
-    if state.ndim not in (1, 2) or state.shape[0] != n:
-        raise SceneError(f"the chain has {n} rods, and {name} has shape {state.shape}: give shape ({n},), or "
-                         f"({n}, chains) for many chains.")
-    return state
+        array = np.asarray(values)
+    except ValueError:  # rows of unequal length
+        array = np.asarray(values, dtype=object)
+    if array.dtype.kind not in "fiu":
+        array = np.array([to_float(real_number(x, name)) for x in array.flat]).reshape(array.shape)
+    if array.ndim not in (1, 2) or array.shape[0] != n:
+        raise SceneError(_wrong_shape(name, array.shape, n))
+    return np.ascontiguousarray(array, FLOAT64)
+
+
+def _wrong_shape(name: str, shape: tuple[int, ...], n: int) -> str:
+    return f"the chain has {n} rods, and {name} has shape {shape}: give shape ({n},), or ({n}, chains) for many chains."
+
+
+def _check_same(theta: Any, omega: Any) -> None:
+    if theta.shape != omega.shape:
+        raise SceneError(f"theta has shape {theta.shape} and omega {omega.shape}: give both the same shape.")
 
 
 def _no_answer(t: Any, theta: Any, omega: Any) -> str:

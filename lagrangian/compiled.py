@@ -17,13 +17,15 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from sympy import Dummy, Matrix, Symbol, lambdify
+from sympy import Dummy, Float, Matrix, Symbol, lambdify
 
-from .chain import CompiledChain
-from .constants import substitution
+from .arithmetic import MPNumbers
+from .chain import PLAIN_TIMES, CompiledChain, float_state
+from .constants import substitution, to_float
 from .equations import EquationsOfMotion
 from .errors import NotASceneError, QuantityError, SceneError
 from .machine import has_numba
+from .quantities import real_number
 
 __all__ = ["CompiledEquations", "compile_equations"]
 
@@ -64,24 +66,52 @@ class CompiledEquations:
     def _translated(self, arguments: list[Any], sides: list[Any]) -> Any:
         modules = "mpmath" if self.target == "mpmath" else "numpy"
         if self.target == "numba":
-            M, f = sides
-            sides = [[*M], [*f]]
+            sides = [[Float(x, 17) if x.is_number else x for x in side] for side in sides]  # lists of floats alone
         function = lambdify(arguments, sides, modules=modules, cse=True, dummify=True)
         return import_module("numba").njit(function) if self.target == "numba" and has_numba() else function
 
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''``, shape (n,): float64, or mpmath numbers at the precision of mpmath's own context; rad/s**2.
 
-        Raises SceneError unless theta and omega hold n numbers each.
+        Raises SceneError unless theta and omega hold n numbers each; QuantityError, NotAQuantityError, TextError where
+        these are no finite numbers, or the mass matrix is singular.
         """
-        n = len(self.chain)
-        if len(theta) != n or len(omega) != n:
-            raise SceneError(f"the chain has {n} rods, and theta has {len(theta)} and omega {len(omega)} entries.")
         if self.target == "mpmath":
-            M, f = self._function(mpmath.mpf(t), *map(mpmath.mpf, theta), *map(mpmath.mpf, omega))
+            time = MPNumbers(mpmath.mp).coerced(t)
+            theta, omega = self._exact(theta, "theta"), self._exact(omega, "omega")
+        else:
+            time = t if type(t) in PLAIN_TIMES else to_float(real_number(t, "t"))
+            theta, omega = self._floats(theta, "theta"), self._floats(omega, "omega")
+        try:
+            return self._solved(*self._function(time, *theta, *omega))
+        except (np.linalg.LinAlgError, ZeroDivisionError):
+            raise QuantityError(f"the mass matrix is singular at theta = {theta}: where rods have no mass, use "
+                                f"scene.compile(values), which takes the limit.") from None
+
+    def _floats(self, values: Any, name: str) -> list[float]:
+        n = len(self.chain)
+        array = float_state(values, name, n)
+        if array.ndim != 1:
+            raise SceneError(f"the chain has {n} rods, and {name} has shape {array.shape}: give {n} numbers.")
+        return array.tolist()  # type: ignore[no-any-return]
+
+    def _exact(self, values: Any, name: str) -> list[Any]:
+        n, array = len(self.chain), np.asarray(values, dtype=object)
+        if array.shape != (n,):
+            raise SceneError(f"the chain has {n} rods, and {name} has shape {array.shape}: give {n} numbers.")
+        found: list[Any] = MPNumbers(mpmath.mp).array(array).tolist()
+        if not all(map(mpmath.isfinite, found)):
+            raise QuantityError(f"{name} holds {found}, which is not finite: give finite numbers.")
+        return found
+
+    def _solved(self, M: Any, f: Any) -> Any:
+        if self.target == "mpmath":
             return np.array(list(mpmath.lu_solve(M, f)), dtype=object)
-        M, f = self._function(float(t), *map(float, theta), *map(float, omega))
-        return np.linalg.solve(np.asarray(M, dtype=float).reshape(n, n), np.asarray(f, dtype=float).reshape(n))
+        n = len(self.chain)
+        found = np.linalg.solve(np.asarray(M, dtype=float).reshape(n, n), np.asarray(f, dtype=float).reshape(n))
+        if not found.dot(found) < np.inf and not np.isfinite(found).all():
+            raise QuantityError("theta'' is not finite for this state: give finite numbers.")
+        return found
 
     def __len__(self) -> int:
         return len(self.chain)

@@ -14,11 +14,11 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from sympy import Symbol, nan, oo, zoo
+from sympy import Symbol
 
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
-from .quantities import quantity, refuse_text
+from .quantities import quantity, real_number, refuse_text
 
 __all__ = ["NAMES", "check_joints", "checked", "column", "joint_constants", "products", "rod_row", "substitution",
            "to_float", "to_floats"]
@@ -66,17 +66,8 @@ def column(values: Any, name: str) -> Any:
         return column(np.array(found, dtype=np.float64), name)
     out = np.empty(len(found), dtype=object)
     for i, x in enumerate(found):
-        out[i] = _number(x, f"{name}[{i}]")
+        out[i] = real_number(x, f"{name}[{i}]")
     return out
-
-
-def _number(x: Any, name: str) -> Any:
-    exact = quantity(x, name)
-    if not exact.is_number or exact.has(nan, oo, zoo):
-        symbol = sorted(map(str, exact.free_symbols))[0]
-        raise QuantityError(f"{name} is {exact}, which holds the Symbol {symbol}: give a number for it, as in "
-                            f"scene.compile({{symbol: number}}).")
-    return exact
 
 
 def checked(columns: list[Any]) -> list[Any]:

@@ -16,7 +16,7 @@ from sympy import Expr, Float, I, Integer, Rational, nan, oo, zoo
 
 from .errors import NotAQuantityError, QuantityError, TextError
 
-__all__ = ["quantity", "refuse_text"]
+__all__ = ["AnyMpf", "quantity", "real_number", "refuse_text"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
 
@@ -42,6 +42,17 @@ def quantity(value: Any, name: str) -> Any:
     if expression.is_real is False or (expression.is_number and expression.has(I) and not expression.is_real):
         raise QuantityError(f"{name} is {expression}, which is not real: give a real number or a Symbol.")
     return expression
+
+
+def real_number(value: Any, name: str) -> Any:
+    """An exact number; raises as :func:`quantity`, and QuantityError where a Symbol or a function is in it."""
+    exact = quantity(value, name)
+    if not exact.is_number:
+        symbols = sorted(map(str, exact.free_symbols))
+        raise QuantityError(f"{name} is {exact}, which holds the Symbol {symbols[0]}: give a number for it, as in "
+                            f"scene.compile({{symbol: number}})." if symbols else
+                            f"{name} is {exact}, which is no number: give a number.")
+    return exact
 
 
 def _exact(value: Any, name: str) -> Any:

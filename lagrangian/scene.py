@@ -309,7 +309,12 @@ def _time(t: Any, support: Support) -> Any:
     if t is not None and not isinstance(t, Symbol):
         raise NotAQuantityError(f"t is {t!r}, not a Symbol: give the Symbol that the support's motion is written in.")
     name = "t" if t is None else t.name
-    found = {x for x in (support.xi.free_symbols | support.eta.free_symbols) if x.name == name}
+    symbols = support.xi.free_symbols | support.eta.free_symbols
+    found = {x for x in symbols if x.name == name}
+    if t is None and symbols and not found:
+        motion = support.xi if support.xi.free_symbols else support.eta
+        raise DriveError(f"the support moves by {motion}, in which no Symbol is called t: say which is the time, as in "
+                         f"Scene(..., t=tau).")
     if len(found | ({t} if t is not None else set())) > 1:
         raise DriveError(
             f"the support moves with more than one Symbol called {name}, which differ in their assumptions and are "

@@ -22,7 +22,7 @@ from sympy.core.function import AppliedUndef
 from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
-from .quantities import quantity, refuse_text
+from .quantities import real_number, refuse_text
 
 __all__ = ["Shaking", "shaking_of"]
 
@@ -122,7 +122,7 @@ def shaking_of(given: Any) -> Shaking:
     except (TypeError, ValueError):
         raise DriveError(f"support_acceleration is {given!r}: give the pair (xi'', eta''), or a function of t that "
                          f"gives one.") from None
-    return Shaking((quantity(ax, "support_acceleration[0]"), quantity(ay, "support_acceleration[1]")))
+    return Shaking((real_number(ax, "support_acceleration[0]"), real_number(ay, "support_acceleration[1]")))
 
 
 def shaking_of_expressions(xi: Any, eta: Any, t: Any) -> Shaking:

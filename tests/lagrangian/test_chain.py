@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from sympy import (
     factorial,
     lambdify,
     log,
+    pi,
     sin,
     sqrt,
     symbols,
@@ -319,6 +321,8 @@ def test_model_is_the_least_that_the_chain_requires():
     (([1], [1], [1], [1], 9.81, (0, 0), [1, 1]), SceneError, ["2 values", "1 rods"]),
     (([1, 0], [1, 1], [1, 1], [1, 1], 9.81, (0, 0), None, [1, 1]), SceneError, ["rod 2", "springs"]),
     (([1], [1], [1], [1], 9.81, 7), Exception, ["pair"]),
+    (([1], [1], [1], [1], symbols("g")), QuantityError, ["gravity", "Symbol g"]),
+    (([1], [1], [1], [1], 9.81, (symbols("a"), 0)), QuantityError, ["support_acceleration[0]", "Symbol a"]),
 ])
 def test_what_no_chain_can_be_is_refused(arguments, error, words):
     """A named error with the claim, the value and the remedy."""
@@ -335,6 +339,15 @@ def test_what_no_chain_can_be_is_refused(arguments, error, words):
     ((["a", "b"], [0.0, 0.0]), Exception, ["theta"]),
     (("ab", [0.0, 0.0]), TextError, ["theta"]),
     ((np.zeros((2, 3)), np.zeros(2)), SceneError, ["(2, 3)"]),
+    ((["1", "2"], [0.0, 0.0]), TextError, ["theta", "1"]),
+    (([mpmath.mpf(1), "2"], [0, 0]), TextError, ["2", "never evaluated"]),
+    (([flint.arb(1), "2"], [0, 0]), TextError, ["2", "never evaluated"]),
+    ((np.ones(2) * 1j, [0, 0]), NotAQuantityError, ["theta", "1j"]),
+    (([1, [2, 3]], [0, 0]), NotAQuantityError, ["theta", "[2, 3]"]),
+    (([symbols("x"), 1], [0, 0]), QuantityError, ["theta", "Symbol x"]),
+    (([mpmath.mpf("nan"), 1], [0, 0]), QuantityError, ["finite", "nan"]),
+    (([flint.arb("nan"), 1], [0, 0]), QuantityError, ["finite", "nan"]),
+    (([mpmath.mpf(1)] * 3, [0, 0]), SceneError, ["(3,)", "(2,)"]),
 ])
 def test_a_state_without_an_answer_is_refused(state, error, words):
     """Shapes, infinities and overflow are named."""
@@ -344,11 +357,37 @@ def test_a_state_without_an_answer_is_refused(state, error, words):
     assert all(word in str(refusal.value) for word in words)
 
 
+@pytest.mark.parametrize("time", ["1", None, 1j, symbols("s")])
+def test_a_time_is_a_number(time):
+    """Whether the support moves or not."""
+    with pytest.raises((TextError, NotAQuantityError, QuantityError), match="t is"):
+        CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]).acceleration(time, np.ones(2), np.ones(2))
+
+
+def test_numbers_of_all_kinds_stand_side_by_side():
+    """The most precise kind decides, also that of the time, and many chains keep it as one does."""
+    chain = Scene([Rod.uniform(1, 1)] * 2, Support(eta=cos(7 * t) / 10), gravity=10, t=t).compile()
+    plain = chain.acceleration(1 / 3, [1.0, 0.5], [0.0, 2.0])
+    third, half = mpmath.mpf(1) / 3, Fraction(1, 2)
+
+    for time, theta, omega in (
+            (third, [1, half], np.array([0.0, 2.0])), (third, np.array([1.0, 0.5]), [0.0, 2]),
+            (Rational(1, 3), [mpmath.mpf(1), half], (0, 2)), (1 / 3, [flint.arb(1), half], [0, 2]),
+            (Rational(1, 3), [sin(pi / 2), half], [0, Decimal(2)]), (third, [np.int64(1), half], [0, 2])):
+        found = chain.acceleration(time, theta, omega)
+        assert abs(np.array([float(x) for x in found]) - plain).max() < 1e-14
+    states = np.array([[mpmath.mpf(1), mpmath.mpf(2)], [third, third]])
+    many = chain.acceleration(third, states, states)
+    assert many.dtype == object and list(many[:, 1]) == list(chain.acceleration(third, states[:, 1], states[:, 1]))
+
+
 def test_compile_says_which_symbol_has_no_value():
     """scene.compile needs a number for every Symbol, and never text."""
     m, l = symbols("m l")
     with pytest.raises(QuantityError, match="Symbol l"):
         Scene([Rod.bob(m, l)]).compile({m: 1})
+    with pytest.raises(QuantityError, match="gravity is g, which holds the Symbol g"):
+        Scene([Rod.bob(m, l)]).compile({m: 1, l: 1})
     with pytest.raises(QuantityError, match="Symbol m"):
         Scene([Rod.bob(1, 1)], Support(eta=m * cos(l * t)), 1, t=t).compile({l: 2})
     with pytest.raises(DriveError, match=r"xi\(t\)"):

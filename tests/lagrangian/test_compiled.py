@@ -1,10 +1,12 @@
 """The symbolic equations as functions of numbers, for every target, and names that would be code."""
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
-from sympy import Rational, Symbol, cos, sin, symbols
+from sympy import Rational, Symbol, cos, pi, sin, symbols
 
 from lagrangian import (
     NotASceneError,
@@ -70,6 +72,24 @@ def test_machine_code_equals_numpy():
     one, other = (compile_equations(equations, target=target).acceleration(*state) for target in ("numpy", "numba"))
 
     assert abs(one - other).max() < 1e-12
+
+
+@pytest.mark.parametrize("target", ["numpy", "mpmath", "numba"])
+def test_states_of_every_kind_have_an_answer_or_a_name(target):
+    """One exact rod, fractions, pi; and nan, text, other shapes, rods without mass."""
+    one = compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)], gravity=10)), target=target)
+    m = Symbol("m")
+    light = compile_equations(euler_lagrange(Scene([Rod.bob(1, 1), Rod.bob(m, 1)], gravity=10)), {m: 0}, target)
+
+    assert abs(float(one.acceleration(Rational(1, 3), [pi / 6], [Fraction(1, 2)])[0]) - 5) < 1e-15
+    for state, error, word in (([float("nan")], QuantityError, "finite"), (["1"], TextError, "never"),
+                               (1.0, SceneError, "shape"), ([[1.0]], SceneError, "shape")):
+        with pytest.raises(error, match=word):
+            one.acceleration(0, state, [0])
+    with pytest.raises(TextError, match="never"):
+        one.acceleration("0", [0], [0])
+    with pytest.raises(QuantityError, match="singular"):
+        light.acceleration(0, [0.3, 0.3], [1, 1])
 
 
 def test_a_symbol_whose_name_is_code_stays_a_name(tmp_path):

@@ -75,6 +75,7 @@ def linear(rods=(rod,), support=driven, **options):
     (lambda: Scene([rod], Support(eta=Abs(cos(t)))), DriveError, "twice"),
     (lambda: Scene([rod], Support(eta=Heaviside(t))), DriveError, "twice"),
     (lambda: Scene([rod], Support(eta=cos(t)), t=Symbol("t", real=True)), DriveError, "assumptions"),
+    (lambda: Scene([rod], Support(eta=l * cos(omega0))), DriveError, "which is the time"),
     (lambda: Support(eta=I), QuantityError, "real"),
     (lambda: Support(eta=nan), QuantityError, "finite"),
     (lambda: euler_lagrange(rod), NotASceneError, "Scene"),
