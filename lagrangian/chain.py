@@ -41,6 +41,7 @@ from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
+from .torques import exact_torques, joint_torques, joint_torques_of_many
 
 __all__ = ["PLAIN_TIMES", "CompiledChain", "float_state"]
 
@@ -316,7 +317,18 @@ class CompiledChain:
 
     def torques(self, theta: Any, omega: Any) -> Any:
         """The torque of dampers and springs on every rod, None where there are none; N m, the shape of theta."""
-        return _torques(theta, omega, *self._joint_floats) if self.has_torques else None
+        if not self.has_torques:
+            return None
+        if theta.dtype == object:
+            return exact_torques(theta, omega, *self._joint_floats)
+        tau = np.empty_like(theta)
+        if not has_numba():
+            joint_torques(theta, omega, *self._joint_floats, tau)
+        elif theta.ndim == 1:
+            machine(joint_torques)(theta, omega, *self._joint_floats, tau)
+        else:
+            machine(joint_torques_of_many)(theta, omega, *self._joint_floats, tau)
+        return tau
 
     def _exactly(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n,) or (n, chains) in another arithmetic."""
@@ -349,7 +361,7 @@ class CompiledChain:
             bobs = np.stack([rods[:, 0], rods[:, 1], np.array(ratios, dtype=object), 1 / rods[:, 0]], axis=1)
             accelerate_bobs(bobs, omega * omega, s, c, ax, ay, work, None, out)
         else:
-            tau = _torques(theta, omega, *joints)
+            tau = exact_torques(theta, omega, *joints)
             accelerate_rods(rods, omega * omega, tau, s, c, ax, ay, work, None, out)
         return out
 
@@ -386,22 +398,6 @@ class CompiledChain:
         ax, ay = (to_float(x) for x in self.support.constant)
         pull = max(abs(to_float(self.gravity) + ay), abs(ax), np.finfo(float).tiny)
         return float((self.rods[:, 0] * reach).sum() * pull)
-
-
-def _torques(theta: Any, omega: Any, damping: Any, springs: Any) -> Any:
-    """``tau_k = b_(k+1) - b_k`` with ``b_k = c_k delta_k' + k_k delta_k``."""
-    moment = None
-    for constants, angle in ((damping, omega), (springs, theta)):
-        if constants is not None:
-            steps = angle.copy()
-            steps[1:] = steps[1:] - angle[:-1]
-            part = constants.reshape((-1,) + (1,) * (angle.ndim - 1)) * steps
-            moment = part if moment is None else moment + part
-    if moment is None:
-        return None
-    tau = -moment
-    tau[:-1] = tau[:-1] + moment[1:]
-    return tau
 
 
 def _is_plain(theta: Any, omega: Any) -> bool:

@@ -75,6 +75,10 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 if doubtful is not None:
                     held[9 * LANES + j], held[8 * LANES + j] = spread_within(s, c, a, x, y, f0,
                                                                              rate[j] * rate[j] * (mH + l * Er))
+                    if tau is not None:
+                        w, g, h = t * l * r, t * g0, t * g1
+                        o[6 * LANES + j] += w * w
+                        held[8 * LANES + j] += g * g * s * s + h * h * c * c
                 Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
                 f0, f1, f2, f3 = turned_force(s, c, f0, f1, f2, f3)
                 held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j] = Puu, Pun, Pnn, det

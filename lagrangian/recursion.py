@@ -38,6 +38,7 @@ independently.  Then variances, in units of u**2, add.  With ``qu' = A - b`` the
 
     var Pun = (Puu p q)**2 + (s c Delta/Puu)**2, p and q the components of v,   var qn = qn**2 + s**2 (qu'**2 + b**2)
 
+(where a torque acts, its parts of qu', qn' and w2 below count as terms of their own)
 and on the way back, with ``w0 = J/D``, ``w1`` and ``w2 = l**2 qn/D``, the covariance C of the errors of ``(tu, tn)``
 follows the linear map that the pair itself follows,
 
@@ -164,6 +165,10 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
             ll = l * l * r
             doubt[0, k], doubt[1, k] = ll * ll * Vq + work[k, 2] * work[k, 2], ll * ll * Vp
             Vp, Vq = spread_within(s[k], c[k], a, x, y, f0, z[k] * (mH + l * Er))
+            if tau is not None:
+                w, g, h = t * l * r, t * g0, t * g1
+                doubt[0, k] += w * w
+                Vq = Vq + (g * g * s[k] * s[k] + h * h * c[k] * c[k])
         Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
         Delta = det
         qu, qn, ku, kn = turned_force(s[k], c[k], f0, f1, f2, f3)
