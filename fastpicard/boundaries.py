@@ -32,6 +32,7 @@ from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.harmonics import harmonics
 from fastpicard.modes import Modes
+from fastpicard.precision import working
 from fastpicard.remainder import a_posteriori
 from fastpicard.ring import expression_of
 from fastpicard.series import PoissonSeries
@@ -225,7 +226,7 @@ class Boundary:
                                 "Choose one of these.")
         others = {s: v for s, v in (fixed or {}).items() if s != x}
         exact = exact_values({**others, x: 0}, self.symbols, self._F.t)
-        with ctx.workprec(dps_to_prec(wanted) + 64):
+        with working(dps_to_prec(wanted) + 64):
             value, count = zero(lambda here: self._dual({**exact, x: here}, (x,)), bracket, arb(10) ** -wanted)
             dual = self._dual({**exact, x: value}, (x, *(s for s in self.symbols if s != x)))
             slopes = {s: to_number(-d / dual[1], None)
@@ -246,7 +247,7 @@ class Boundary:
             return float("inf")
         distance = (2 * abs(at) / abs(dual[1]) + abs(value) * arb(2) ** (8 - ctx.prec)).upper()
         for _ in range(3):
-            with ctx.workprec(ctx.prec + 32):
+            with working(ctx.prec + 32):
                 left, right = (self._dual({**values, x: (value + side * distance).mid()}, (), slack)[0]
                                for side in (-1, 1))
             if left * right < 0 and abs(distance) < abs(value) + 1:

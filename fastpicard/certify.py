@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb
 from sympy import Symbol
 
 from fastpicard import plotting
@@ -30,6 +30,7 @@ from fastpicard.evaluate import Values, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
 from fastpicard.local import BITS, LocalMap, amplitudes, common_bound, convex, order_for, polynomials
+from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles, bisected, cells, corners, flattened, grid, joined, narrowed
 from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
@@ -259,7 +260,7 @@ def _speed(chart: Charted, boxes: Rectangles) -> Array:
 def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[list[LocalMap], int, float]:
     """One map for each member, from an iterate whose remainder on all rectangles is small."""
     majorant = common_bound([amplitudes(chart, member, boxes) for member in chart.members])
-    with ctx.workprec(BITS):
+    with working(BITS):
         period = chart.period / (2 if rule.half else 1)
         order = order_for(majorant, period, REMAINDER)
         error = max(upper_float(x.upper()) for x in a_priori(majorant, period, order).entries())

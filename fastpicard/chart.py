@@ -20,7 +20,6 @@ from collections.abc import Sequence
 from math import lgamma
 from typing import Any
 
-from flint import ctx
 from sympy import Symbol
 
 from fastpicard import sweeps
@@ -31,6 +30,7 @@ from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.local import BITS, convex, span_at
+from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.vectorise import Evaluator
 
@@ -177,7 +177,7 @@ def _balance(problem: Charted, member: Member, grid: list[Array]) -> tuple[Array
 def _amplitudes(problem: Charted, member: Member, grid: list[Array]) -> Array:
     """``sup |P_ij|`` at every point: shape (size, size, points)."""
     np = numpy()
-    with ctx.workprec(BITS):
+    with working(BITS):
         waves = problem.waves(member)
     bound = np.zeros((*problem.F.shape, len(grid[0])))
     for (i, j), parts in waves.items():
@@ -191,7 +191,7 @@ def _remainder(problem: Charted, member: Member, grid: list[Array], part: float 
     For second order, of the diagonal; the others have the factors of :func:`_balance` beside.
     """
     np = numpy()
-    with ctx.workprec(BITS):
+    with working(BITS):
         length = part * float(problem.period) * (1 + 2.0**-40)
     bound = _amplitudes(problem, member, grid)
     if problem.F.shape == (2, 2) and not bound[0, 0].any() and not bound[1, 1].any():

@@ -31,6 +31,7 @@ from fastpicard.evaluate import (
 )
 from fastpicard.horner import Exponents, program, run
 from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Modes
+from fastpicard.precision import working
 from fastpicard.ring import Monomial, expression_of, symbols_of
 
 REMEMBERED = 6  # precisions whose coefficients are kept
@@ -200,7 +201,7 @@ def _magnitude(c: Any) -> int:
 
 def _rounded(c: Any, exponent: int) -> tuple[float, float]:
     """``c * 2**exponent`` as a pair of floats."""
-    with ctx.workprec(256):
+    with working(256):
         c = c * arb(2) ** exponent
         high = to_number(c, None)
         return high, to_number(c - arb(high), None) if math.isfinite(high) else 0.0

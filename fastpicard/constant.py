@@ -12,10 +12,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from flint import ctx, fmpq, fmpq_mat, fmpq_poly
+from flint import fmpq, fmpq_mat, fmpq_poly
 
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS, NO_ANGLE
+from fastpicard.precision import working
 from fastpicard.spectrum import coefficients
 from fastpicard.stability import Verdict
 
@@ -58,7 +59,7 @@ def _right_of_axis(p: Any) -> bool:
     """Whether a root of ``p`` has a positive real part, where none is on the imaginary axis."""
     precision = 64
     while True:
-        with ctx.workprec(precision):
+        with working(precision):
             parts = [root.real for root, _ in p.complex_roots()]
         if any(x > 0 for x in parts):
             return True

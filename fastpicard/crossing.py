@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 from sympy import Symbol
 
 from fastpicard.boundaries import Boundary
@@ -16,6 +16,7 @@ from fastpicard.curves import exact_ball, resolved
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, exact_values
 from fastpicard.harmonics import harmonics
+from fastpicard.precision import working
 from fastpicard.remainder import a_priori
 
 
@@ -60,7 +61,7 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     """
     names = (x, y)
     exact = exact_values({**(fixed or {}), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
-    with ctx.workprec(192):
+    with working(192):
         center = [exact_ball(z) for z in start]
         for part in (f, g):  # as many bits as cancel in them
             resolved(lambda *at, part=part: part._dual({**exact, **dict(zip(names, at, strict=True))}, names), center,

@@ -22,6 +22,7 @@ from flint import arb, ctx, fmpq
 
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import exact_number, numpy, to_number
+from fastpicard.precision import working
 
 MOST = 60  # evaluations of one zero
 MOST_BITS = 1 << 14  # of the working precision
@@ -94,7 +95,7 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
         tangents ``(dx, dy)`` in units of the sides, of length 1, all in the direction of travel.
     """
     np = numpy()
-    with ctx.workprec(128):
+    with working(128):
         first = _onto(function, box, [(c - lo) / w for c, (lo, w) in zip(start, box, strict=True)])
         if first is None:
             return None

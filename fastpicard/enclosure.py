@@ -31,6 +31,7 @@ from mpmath.libmp import dps_to_prec
 
 from fastpicard.errors import BadInputError
 from fastpicard.harmonics import Harmonics
+from fastpicard.precision import working
 
 MOST_PIECES, MOST_ORDERS = 1 << 20, 1 << 14
 
@@ -78,7 +79,7 @@ def to_digits(compute: Callable[[], Any], digits: int, is_box: bool = False, str
     wanted = dps_to_prec(digits)
     bits, before = wanted + 32, None
     while True:
-        with ctx.workprec(bits):
+        with working(bits):
             found = compute()
             missing = shortfall(found, wanted)
         if missing <= 0:

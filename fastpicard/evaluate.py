@@ -22,12 +22,13 @@ from typing import Any
 
 import mpmath
 import sympy
-from flint import acb, acb_poly, arb, ctx, fmpq, fmpz, fmpz_poly
+from flint import acb, acb_poly, arb, fmpq, fmpz, fmpz_poly
 from mpmath import libmp
 from sympy import Expr, Symbol
 
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.modes import COS, Key, Linear, Modes
+from fastpicard.precision import working
 from fastpicard.ring import Monomial, Polynomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
@@ -271,7 +272,7 @@ def refine(compute: Callable[[], list[Any]], digits: int | None) -> list[Any]:
     needed = 56 if digits is None else libmp.dps_to_prec(digits) + 4
     precision = needed + 64
     while True:
-        with ctx.workprec(precision):
+        with working(precision):
             result = compute()
             if all(_accurate(x, needed) for x in result):
                 return result

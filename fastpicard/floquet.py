@@ -15,7 +15,7 @@ from functools import cached_property
 from math import gcd
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, ImmutableMatrix, Symbol, pi
 
@@ -31,6 +31,7 @@ from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, rea
 from fastpicard.modes import Modes
 from fastpicard.period import check_period, turns_of
 from fastpicard.picard import check_order
+from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
 from fastpicard.ring import ONE, Polynomial, multiply, symbols_of
@@ -236,7 +237,7 @@ class FloquetMatrix:
         if not ball(limit) > 0:
             raise BadInputError(f"tol must be positive, but it is {tol}.  Use 1e-12, say.")
         exact = first.numbers(values)
-        with ctx.workprec(_BOUND_BITS):
+        with working(_BOUND_BITS):
             return first.to_order(smallest_order(*first.at(exact), ball(limit)))
 
     def numbers(self, values: Values | None) -> dict[Any, Any]:
@@ -277,7 +278,7 @@ class FloquetMatrix:
         True
         """
         exact = self.numbers(values)
-        with ctx.workprec(_BOUND_BITS):
+        with working(_BOUND_BITS):
             bound = a_posteriori(*self.at(exact), self.n)
             if entrywise:
                 return number_matrix([upper_float(x) for x in bound.entries()], self.shape, None)
@@ -361,7 +362,7 @@ class FloquetMatrix:
         tried = wanted + 5
         while True:
             matrix = self.enclosure(values, tried)
-            with ctx.workprec(dps_to_prec(tried) + 64):
+            with working(dps_to_prec(tried) + 64):
                 found = reciprocal_multipliers(matrix) if paired else general_multipliers(matrix)
                 if all(m.digits >= wanted for m in found):
                     return found
@@ -403,7 +404,7 @@ class FloquetMatrix:
         paired, forms = self._structure(exact)
         for digits in (10, 30, 100):
             matrix = self._true(exact, digits, strict=False)
-            with ctx.workprec(dps_to_prec(digits) + 64):
+            with working(dps_to_prec(digits) + 64):
                 verdict = judge(matrix, paired, forms)
             if verdict != Verdict.UNDECIDED or is_box(exact):
                 break

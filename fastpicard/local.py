@@ -22,12 +22,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from fastpicard.charted import Charted, Exponents, Member
 from fastpicard.collapsed import Collapsed
 from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
+from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
@@ -153,7 +154,7 @@ def polynomials(chart: Charted, collapsed: Collapsed, boxes: Rectangles, tol: fl
     reach = [arb(float(numpy().maximum(abs(boxes.lower[k]), abs(boxes.upper[k])).max())) for k in (0, 1)]
     bits = BITS
     while True:
-        with ctx.workprec(bits):
+        with working(bits):
             found = [chart.polynomials(collapsed, member) for member in chart.members]
             if all(_lost(terms, reach, bits) <= tol for member in found for terms in member):
                 return found, bits
@@ -181,7 +182,7 @@ class LocalMap:
         self.bits = bits
         self.shape = tuple(1 + max((e[k] for terms in polynomials for e in terms), default=0) for k in (0, 1))
         self.errors = errors
-        with ctx.workprec(bits):
+        with working(bits):
             self.matrices = [arb_mat([[terms.get((i, j), arb(0)) for j in range(self.shape[1])]
                                       for i in range(self.shape[0])]) for terms in polynomials]
         self.sizes = np.zeros((len(polynomials), *self.shape))
@@ -196,7 +197,7 @@ class LocalMap:
         terms = exponents(degree)
         c = np.zeros((len(terms), len(self.matrices), len(boxes)))
         radii = np.zeros((len(self.matrices), len(boxes)))
-        with ctx.workprec(self.bits):
+        with working(self.bits):
             rows: dict[tuple[float, float], list[Any]] = {}
             for m in range(len(boxes)):
                 (x, y), (r, q) = boxes.center[:, m].tolist(), boxes.half[:, m].tolist()

@@ -18,13 +18,14 @@ from decimal import MAX_EMAX, MIN_EMIN, ROUND_HALF_EVEN, Context, Decimal
 from typing import Any
 
 import mpmath
-from flint import arb, ctx
+from flint import arb
 from mpmath.libmp import dps_to_prec, from_rational
 
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import ball, exact_number
 from fastpicard.mathieu_guess import Guess, float_guess
 from fastpicard.mathieu_matrices import Matrix
+from fastpicard.precision import working
 
 
 def mathieu_a(r: int, q: Any, digits: int = 15) -> Any:
@@ -149,7 +150,7 @@ def _rounded(name: str, r: Any, q: Any, digits: Any) -> Any:
 
 
 def _ends(ball: Any) -> tuple[Any, Any]:
-    with ctx.workprec(ball.bits() + 64):
+    with working(ball.bits() + 64):
         return ball.lower(), ball.upper()
 
 
@@ -164,7 +165,7 @@ def _decimal(x: Any, digits: int) -> Decimal:
 def _enclosure(matrix: Matrix, parameter: Any, digits: int) -> Any:
     """Raise the working precision until the relative accuracy suffices, or until q's own radius is what limits it."""
     wanted = math.ceil(digits * math.log2(10)) + 2
-    with ctx.workprec(64):
+    with working(64):
         about = ball(parameter)
         if about.is_zero():
             return arb(matrix.r**2)
@@ -172,7 +173,7 @@ def _enclosure(matrix: Matrix, parameter: Any, digits: int) -> Any:
     known = wanted + 2
     while known < 8 * wanted + 100_000:
         bits = known - guess.exponent
-        with ctx.workprec(known + 64):
+        with working(known + 64):
             q = ball(parameter)
             middle = q.mid()
             spread = 2 * abs(q - middle).upper()
@@ -190,7 +191,7 @@ def _certified(guess: Guess, q: Any, bits: int) -> Any:
     index = guess.matrix.index
     for guard, slope in ((32, guess.slope), (32, None), (128, None), (512, None), (2048, None)):
         section, scale = guess.section(q, bits + guard)
-        with ctx.workprec(bits + scale + guard):
+        with working(bits + scale + guard):
             middle = section.refine(guess.eigenvalue, slope, bits + scale, guard)
             low, high = middle - arb((1, -bits)), middle + arb((1, -bits))
             if section.count_below(low) == index and section.count_below(high) == index + 1:

@@ -9,10 +9,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from flint import ctx
-
 from fastpicard.errors import BadInputError
 from fastpicard.mathieu_matrices import Matrix, Section, norm
+from fastpicard.precision import working
 
 MAX_ROWS = 1_000_000
 _TINY = 1e-300
@@ -34,7 +33,7 @@ class Guess:
         rows = max(_rows(self.matrix, self.size, self.eigenvalue, bits), self.peak + 2)
         largest = (self.matrix.lowest + 2.0 * rows) ** 2 + 4 * self.size
         scale = math.frexp(largest)[1]
-        with ctx.workprec(2 * (bits + scale) + 64):
+        with working(2 * (bits + scale) + 64):
             section = Section(self.matrix.diagonal(q, rows + 1), self.matrix.couplings(q, rows + 1), self.peak, abs(q))
         return section, scale
 

@@ -35,7 +35,9 @@ Rayleigh's quotient and doubles the digits.  It need not be rigorous: the counts
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb
+
+from fastpicard.precision import working
 
 FLOAT_BITS = 48  # that a guess in float64 has, of the largest entry
 SLOPE_BITS = 36  # and its slope
@@ -95,7 +97,7 @@ class Section:
             slope = None
         while known < bits:
             known = min(known + SLOPE_BITS if slope else 2 * known - 4, bits)
-            with ctx.workprec(known + guard):
+            with working(known + guard):
                 down, up, g = self._pivots(guess)
                 guess = (guess + g / (slope or self._slope(down, up))).mid()
         return guess

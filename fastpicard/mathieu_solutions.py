@@ -14,13 +14,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from flint import acb, arb, arb_mat, ctx
+from flint import acb, arb, arb_mat
 from mpmath.libmp import dps_to_prec
 
 from fastpicard.enclosure import over_period, to_digits, transition
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import ball, check_digits, exact_number, to_complex, to_number
 from fastpicard.harmonics import Harmonics
+from fastpicard.precision import working
 
 
 def mathieu_c(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
@@ -79,7 +80,7 @@ def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
     tried = wanted + 5
     while tried <= 8 * wanted + 200:
         matrix = over_period(lambda: (_equation(*map(ball, numbers)), arb.pi()), 1, tried)
-        with ctx.workprec(dps_to_prec(tried) + 32):
+        with working(dps_to_prec(tried) + 32):
             nu = _exponent(matrix[0, 0])
             if nu is not None and _is_known(nu.real, wanted) and _is_known(nu.imag, wanted):
                 return to_complex(nu, wanted)

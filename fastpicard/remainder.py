@@ -27,9 +27,10 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from flint import arb, arb_mat, arb_poly, ctx
+from flint import arb, arb_mat, arb_poly
 
 from fastpicard.harmonics import Harmonics
+from fastpicard.precision import working
 
 BITS = 64  # for bounds, whose own digits matter little
 MOST_INCREMENTS, LEVELS = 300, 6  # how far to go for a sharp bound
@@ -37,7 +38,7 @@ MOST_INCREMENTS, LEVELS = 300, 6  # how far to go for a sharp bound
 
 def a_priori(P: Harmonics, period: Any, n: int) -> Any:
     """``sum over k > n of (Pbar T)**k / k!`` as an ``arb_mat``, entries rounded up."""
-    with ctx.workprec(BITS):
+    with working(BITS):
         X, peak = P.bound * abs(period), _peak(P, period)
         if peak > 2 * n + MOST_INCREMENTS:  # the terms up to n are nothing beside the largest ones
             return _upper(X.exp())
@@ -71,7 +72,7 @@ def a_posteriori(P: Harmonics, period: Any, n: int) -> Any:
             next(source)
         while 100 * largest_row_sum(rest) > largest_row_sum(_upper(total)) and not _is_zero(rest):
             k += 1
-            with ctx.workprec(BITS):
+            with working(BITS):
                 total = total + next(source)
             rest = a_priori(P, period, k)
         if _is_sharp(total) or P.is_wide:
@@ -87,7 +88,7 @@ def _is_sharp(total: Any) -> bool:
 
 def _peak(P: Harmonics, period: Any) -> float:
     """About the order up to which the terms of the a-priori sum grow."""
-    with ctx.workprec(BITS):
+    with working(BITS):
         X = P.bound * abs(period)
         return math.sqrt(float(largest_row_sum(X * X)))
 
@@ -152,7 +153,7 @@ def increments_at_end(P: Harmonics, period: Any, n: int, level: int = 0) -> Iter
     pieces = max(8, n // 6, math.ceil(float((abs(period) * P.highest).upper()) / 2))
     degree, bits = 36 + 20 * level, 192 << level
     size = P.size
-    with ctx.workprec(bits):
+    with working(bits):
         step = period / pieces
         models = [{place: _model(waves, step, degree) for place, waves in P.shifted(step * m).waves.items()}
                   for m in range(pieces)]
@@ -160,7 +161,7 @@ def increments_at_end(P: Harmonics, period: Any, n: int, level: int = 0) -> Iter
         end = arb_mat(size, size, _identity(size))
     while True:
         yield end
-        with ctx.workprec(bits):
+        with working(bits):
             current, end = _next_increment(models, current, degree)
 
 

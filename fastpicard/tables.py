@@ -20,7 +20,7 @@ from itertools import accumulate, repeat
 from operator import mul
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 from mpmath.libmp import dps_to_prec
 
 from fastpicard.collapsed import Collapsed
@@ -29,6 +29,7 @@ from fastpicard.errors import BadTypeError
 from fastpicard.evaluate import Point, Values, check_digits, refine
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, reversal
+from fastpicard.precision import working
 from fastpicard.remainder import a_priori_order, largest_row_sum
 
 SPARE_DIGITS = 5  # what entries lose to cancellation, mostly
@@ -91,7 +92,7 @@ class Tabulated(FloquetMatrix):
     def _true(self, exact: Mapping[Any, Any], digits: int, strict: bool = True) -> Any:
         wanted = dps_to_prec(digits)
         if digits <= self._table.digits:
-            with ctx.workprec(self._table.bits):
+            with working(self._table.bits):
                 found = self._table.over_period(exact)
                 if found is not None and shortfall(found, wanted) <= 0:
                     return found
@@ -110,12 +111,12 @@ class Table:
     def __init__(self, F: FloquetMatrix, box: Mapping[Any, Any], digits: int) -> None:
         self.turns, self.signs, self.digits = F.turns, reversal(F.P), digits
         self.part = F.over(F.turns, 0)
-        with ctx.workprec(128):
+        with working(128):
             P, h = self._at(box)
             self.order = a_priori_order(P, h, arb(10) ** -(digits + SPARE_DIGITS))
             growth = largest_row_sum((P.bound * h).exp())
         self.bits = dps_to_prec(digits + SPARE_DIGITS) + 8 + 2 * math.ceil(math.log2(float(growth)))
-        with ctx.workprec(self.bits):
+        with working(self.bits):
             self._read(F.over(self.turns, self.order))
 
     def _at(self, values: Mapping[Any, Any]) -> Any:
@@ -161,7 +162,7 @@ class Table:
         P, h = self._at(values)
         n, size = self.order, P.size
         one = arb_mat([[int(i == j) for j in range(size)] for i in range(size)])
-        with ctx.workprec(64):
+        with working(64):
             X = P.bound * abs(h)
             bound = X ** (n + 1) / arb.fac_ui(n + 1) * (one + (X.exp() - one) / (n + 2))
             return arb_mat(size, size, [arb(0, x.upper()) for x in bound.entries()])

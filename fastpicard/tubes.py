@@ -32,6 +32,7 @@ from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, up
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
 from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, polynomials, shift
+from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
@@ -66,7 +67,7 @@ class Tube:
 
     def __call__(self, b: Any, digits: int | None = None) -> Any:
         """A ball that contains the true ``a(b)``, or with ``digits`` an mpf."""
-        with ctx.workprec(dps_to_prec(40)):
+        with working(dps_to_prec(40)):
             t = (ball(exact_number(b, "b")) - self.center) / self.half
             value = arb_poly(list(self.coefficients))(t) + arb(0, arb(self.radius))
             return value if digits is None else to_number(value, digits)
@@ -175,7 +176,7 @@ class _Work:
         majorant = common_bound([amplitudes(chart, member, whole)])
         more = {place: [(q, c + int(place == (1, 0)), s) for q, c, s in waves]
                 for place, waves in majorant.waves.items()}
-        with ctx.workprec(int(-3.33 * np.log10(radius)) + 64):
+        with working(int(-3.33 * np.log10(radius)) + 64):
             half = chart.period / 2
             wider = Harmonics(2, more)
             self.order = order_for(wider, half, radius * 1e-4)
@@ -183,7 +184,7 @@ class _Work:
         G = chart.F.to_order(self.order)
         collapsed = Collapsed([modes for row in criterion(chart.F).entries(G) for modes in row], G.t)
         (functions,), self.bits = polynomials(chart, collapsed, whole, radius * 1e-8)
-        with ctx.workprec(self.bits):
+        with working(self.bits):
             self.local = LocalMap(functions + [_by_first(terms) for terms in functions], [self.error] * 8, self.bits)
         self.shape, self.matrices = self.local.shape, self.local.matrices[:4]
 
@@ -239,7 +240,7 @@ class _Work:
 
     def tube(self, k: int, slab: tuple[float, float], block: tuple[float, float], least: float) -> Tube | None:
         """One curve over one slab."""
-        with ctx.workprec(self.bits):
+        with working(self.bits):
             b0, half = (arb(slab[0]) + arb(slab[1])) / 2, (arb(slab[1]) - arb(slab[0])) / 2
             a0 = self.zero(k, b0, block)
             if a0 is None:

@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import sympy
-from flint import arb, ctx, fmpq
+from flint import arb, fmpq
 from sympy import Symbol
 
 from fastpicard import doubledouble
@@ -36,6 +36,7 @@ from fastpicard.evaluate import (
     numpy,
     to_number,
 )
+from fastpicard.precision import working
 
 Array = Any
 BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
@@ -127,14 +128,14 @@ class Evaluator:
         exact = {name: fmpq(*map(int, float(x).as_integer_ratio())) for name, x in zip(self.names, at, strict=True)}
         precision = 128
         while True:
-            with ctx.workprec(precision):
+            with working(precision):
                 found = self.collapsed.balls(exact)
                 if not all(x.is_finite() for x in found) or precision > EXTRA_BITS:
                     break
                 if max(x.rad() for x in found) <= max(x.abs_lower() for x in found) * arb(2) ** -60:
                     break
             precision *= 2
-        with ctx.workprec(precision):
+        with working(precision):
             pairs = list(map(_with_bound, found))
         return [value for value, _ in pairs], [bound for _, bound in pairs]
 
@@ -174,7 +175,7 @@ def _ball_pairs(variables: list[Variable], at: dict[Symbol, float], time: Any) -
     """Values as pairs of floats right to ``2**-106``, or nan where there is none: a pole, or no digits at all."""
     if not all(map(math.isfinite, at.values())):
         return [(math.nan, math.nan)] * len(variables)
-    with ctx.workprec(256):
+    with working(256):
         point = Point(time, {s: fmpq(*map(int, float(x).as_integer_ratio())) for s, x in at.items()})
         return [_ball_pair(variable.ball(point)) for variable in variables]
 

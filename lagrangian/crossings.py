@@ -13,12 +13,12 @@ from functools import cache, partial
 from math import ceil, floor
 from typing import Any
 
-import flint
 import numpy as np
 from sympy import Integer, pi
 
 from .errors import QuantityError, SceneError
 from .pieces import Pieces
+from .precision import working
 from .quantities import quantity
 from .stepper import TURN
 
@@ -70,7 +70,7 @@ def checked(events: Mapping[str, Crossing] | None, n: int) -> Mapping[str, Cross
 
 def find_crossings(motion: Pieces, events: Mapping[str, Crossing], end: Any) -> dict[str, Any]:
     """The times of every event, in order, up to ``end``; shape (crossings,) each, in the motion's numbers; s."""
-    with flint.ctx.workprec(motion.bits):
+    with working(motion.bits):
         lengths = motion.until(motion.given(end)[0])
         return {name: motion.shown(list(_times(motion, event, lengths))) for name, event in events.items()}
 

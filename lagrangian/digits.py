@@ -3,6 +3,8 @@ r"""Taylor steps with as many digits as asked: the recursion of :mod:`lagrangian
 Balls are used for their speed and precision, not for proof: after every step the radii are dropped, so that
 errors do not compound as if they were always at their worst.  Orders and steps are chosen as in float64:
 ``p = 1 + 1.16 digits`` balances the work of a step, O(n p**2), against its length.
+
+Motions with digits in several threads wait for each other (:mod:`lagrangian.precision`).
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from .arithmetic import Balls
 from .chain import CompiledChain
 from .errors import QuantityError
 from .machine import rebound
+from .precision import working
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
@@ -77,7 +80,7 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
     """
     context = mpmath.mp.clone()
     context.dps = digits
-    with flint.ctx.workprec(bits_for(digits)):
+    with working(bits_for(digits)):
         state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
         motion = (steps or Steps)(chain, state, digits, order)
         motion.pieces = [] if keep else None

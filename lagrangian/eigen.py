@@ -18,6 +18,7 @@ import mpmath
 from sympy import Float, ImmutableDenseMatrix, Integer
 
 from .arithmetic import Balls
+from .precision import working
 
 __all__ = ["eigenpairs"]
 
@@ -32,7 +33,7 @@ def eigenpairs(A: Any, B: Any, digits: int) -> tuple[list[Any], Any]:
     """
     bits = int(3.33 * digits) + 8 * A.rows + 64
     for _ in range(TRIES):
-        with flint.ctx.workprec(bits):
+        with working(bits):
             found = _in_balls(A, B, digits)
         if found is not None:
             return found

@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import flint
 import numpy as np
 from sympy import pi
 
@@ -24,6 +23,7 @@ from .arithmetic import Balls
 from .digits import Piece, bits_for, middle, numbers
 from .errors import QuantityError
 from .floats import split
+from .precision import working
 from .quantities import quantity, refuse_text
 from .stepper import TURN, TURN_LOW, total
 
@@ -54,7 +54,7 @@ class Pieces:
         Raises QuantityError where a time is none, or lies beyond the steps made; TextError for text.
         """
         refuse_text(t, "t")
-        with flint.ctx.workprec(self.bits):
+        with working(self.bits):
             times = self.given(t)
             steps = self.holding(times)
             theta, omega = self.states(steps, times - self.start[steps])

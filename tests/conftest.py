@@ -6,6 +6,8 @@ second pass of the same laws with other ground types.  There are no deadlines: t
 """
 
 import os
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 from hypothesis import HealthCheck, settings
 
@@ -30,3 +32,14 @@ settings.load_profile(PROFILE)
 
 # Random containment checks of an enclosure.
 CHECKS = int(os.environ.get("CHECKS", {"ci": 2000, "nightly": 100_000}.get(PROFILE, 50)))
+
+
+def in_threads(function, arguments):
+    """The values of a function at many arguments, each in a thread of its own, all of them interrupted often."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(len(arguments)) as threads:
+            return list(threads.map(function, arguments))
+    finally:
+        sys.setswitchinterval(before)

@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, enclosure
-from tests.conftest import CHECKS
+from tests.conftest import CHECKS, in_threads
 from tests.fastpicard.test_reference_cases import cases, numbers, read, system
 from tests.oracles import true_fundamental_matrix
 
@@ -215,3 +215,14 @@ def test_an_exact_matrix_is_a_ball_without_radius_or_nearly():
         x.contains(int(i == j)) for (i, j), x in zip([(0, 0), (0, 1), (1, 0), (1, 1)], found.entries(), strict=True)
     )
     assert isinstance(found, arb_mat)
+
+
+def test_threads_wait_for_each_other_and_change_no_digit():
+    """python-flint has one precision for the whole process: 30 and 200 digits side by side, and as it was after."""
+    values, wanted, before = {a: Rational(-1, 10), b: Rational(1, 2)}, [30, 200] * 3, ctx.prec
+
+    def numbers_with(digits):
+        balls = MATHIEU.enclosure(values, digits).entries()
+        return MATHIEU.evaluate(values, digits=digits), [(x.mid().man_exp(), x.rad().man_exp()) for x in balls]
+
+    assert in_threads(numbers_with, wanted) == [numbers_with(digits) for digits in wanted] and ctx.prec == before

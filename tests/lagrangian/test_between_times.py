@@ -6,10 +6,14 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from sympy import Float, Integer, Rational, Symbol, pi
+from flint import ctx
+from sympy import Float, Integer, Matrix, Rational, Symbol, cos, pi
 
+from fastpicard import FloquetMatrix
 from lagrangian import CompiledChain, Crossing, QuantityError, SceneError, TextError, flips, simulate
+from tests.conftest import in_threads
 
+t = Symbol("t")
 HALF, G = Rational(1, 2), Rational("9.81")
 ROD = CompiledChain([1], [1], [HALF], [Rational(3, 5)], G, upright=False)
 BOB = CompiledChain([1], [1], [1], [1], G, upright=False)
@@ -196,3 +200,17 @@ def test_a_time_that_is_a_symbol_is_refused():
     """With its name."""
     with pytest.raises(QuantityError, match="times holds t, which is no number"):
         simulate(TWO, [2, 1], [0, 3], [0, Symbol("t")])
+
+
+def test_threads_wait_for_each_other_and_change_no_digit():
+    """The precision of python-flint belongs to the whole process: motions, states and events, and the other package."""
+    F, before = FloquetMatrix(Matrix([[0, 1], [-cos(t), 0]]), t, 0), ctx.prec
+
+    def numbers(digits):
+        if digits > 100:
+            return F.enclosure({}, digits)[0, 0].mid().man_exp()
+        motion = simulate(BOB, [1], [0], [0, 0.5], digits=digits, dense=True, events={"down": Crossing(1, 0.75)})
+        return motion.theta.tolist(), motion.at(0.25)[0][0], motion.events["down"][0]
+
+    wanted = [40, 80, 200] * 2
+    assert in_threads(numbers, wanted) == [numbers(digits) for digits in wanted] and ctx.prec == before
