@@ -31,17 +31,19 @@ __all__ = ["BallPieces", "FloatPieces", "Pieces"]
 
 
 class Pieces:
-    """The motion at any time within the steps made.
+    """The motion at any time between the first and the last that were asked for.
 
     Attributes
     ----------
     start, length : shape (steps,), numbers of the motion; length is negative in motions backwards; s
     forward : 1 or, in motions backwards, -1
+    span : the least and the largest time that were asked for, numbers of the motion; the last step may lead beyond; s
     bits : of the numbers' mantissas
     """
 
     start: Any
     length: Any
+    span: tuple[Any, Any]
     bits: int
 
     @property
@@ -51,7 +53,7 @@ class Pieces:
     def __call__(self, t: Any) -> tuple[Any, Any]:
         """Angles with turns, rad, and rates, rad/s, at one time, shape (n,), or at k, shape (k, n).
 
-        Raises QuantityError where a time is none, or lies beyond the steps made; TextError for text.
+        Raises QuantityError where a time is none, or lies outside the span; TextError for text.
         """
         refuse_text(t, "t")
         with working(self.bits):
@@ -62,12 +64,13 @@ class Pieces:
 
     def holding(self, times: Any) -> Any:
         """The step that each time lies in; shape (k,)."""
-        forward, end = self.forward, self.plain(self.start[-1:] + self.length[-1:])
-        inside = (forward * times >= forward * self.start[0]) & (forward * times <= forward * end)
+        least, largest = self.span
+        inside = (times >= least) & (times <= largest)
         if not inside.all():
-            first, last, beyond = self.shown([self.start[0], end[0], times[~inside][0]])
-            raise QuantityError(f"the motion is known from t = {first} to {last}, and t is {beyond}.")
-        return np.searchsorted(forward * self.start, forward * times, side="right") - 1
+            first, last, beyond = self.shown([least, largest, times[~inside][0]])
+            raise QuantityError(f"the motion is known from t = {first} to {last}, and t is {beyond}: simulate it up to "
+                                f"there.")
+        return np.maximum(np.searchsorted(self.forward * self.start, self.forward * times, side="right") - 1, 0)
 
     def until(self, end: Any) -> Any:
         """The length of every step, cut off at ``end``; shape (steps,)."""
@@ -113,11 +116,12 @@ def _exact(t: Any) -> list[Any]:
 
 
 class FloatPieces(Pieces):
-    """The steps of :func:`lagrangian.floats.integrate_floats`, from its record."""
+    """The steps of :func:`lagrangian.floats.integrate_floats` to ``times``, from its record."""
 
     bits = 53
 
-    def __init__(self, record: Any, n: int, order: int) -> None:
+    def __init__(self, record: Any, n: int, order: int, times: Any) -> None:
+        self.span = times.min(), times.max()
         self.start, self.length = record[:, 0], record[:, 1]
         rows = record[:, 2:].reshape(-1, n, order + 4)
         self.high, self.low, self.turns, self.rates = rows[..., 0], rows[..., 1], rows[..., 2], rows[..., 3:]
@@ -157,10 +161,16 @@ def _horner(coefficients: Any, h: Any) -> Any:
 
 
 class BallPieces(Pieces):
-    """The steps of :func:`lagrangian.digits.integrate_digits`; results are numbers of ``context``."""
+    """The steps of :func:`lagrangian.digits.integrate_digits` to ``times``; results are numbers of ``context``.
 
-    def __init__(self, pieces: Sequence[Piece], context: Any) -> None:
+    The floats next to the first and the last of the times, which are exact, count as within the span.
+    """
+
+    def __init__(self, pieces: Sequence[Piece], context: Any, times: Sequence[Any]) -> None:
         self.context, self.bits = context, bits_for(context.dps)
+        with working(self.bits):
+            ends = self.given([x for end in (times[0], times[-1]) for x in (end, float(end))])
+        self.span = ends.min(), ends.max()
         self.start, self.length = (np.array(part, dtype=object) for part in ([p.start for p in pieces],
                                                                              [p.length for p in pieces]))
         self.angles = [p.angles for p in pieces]

@@ -105,7 +105,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
             raise SceneError(f"dense output and events come from Taylor series, and method is {method!r}: choose "
                              f"'taylor'.")
         run, error = _by_others(chain, evaluated, theta, omega, times, accuracy, method)
-    motion = FloatPieces(run.record, n, run.order) if keep else None
+    motion = FloatPieces(run.record, n, run.order, times) if keep else None
     found = find_crossings(motion, events, times[-1]) if motion is not None else {}
     return Trajectory(times, run.theta, run.omega, run.turns.astype(np.int64), run.angle,
                       chain.energy(run.angle.T if chain.springs is None else run.theta.T, run.omega.T), error, accuracy,
@@ -179,7 +179,7 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact
     angle = angles - turns * (2 * context.pi)
     energy = chain.energy(np.asarray(angle if chain.springs is None else angles, dtype=float).T,
                           np.asarray(rates, dtype=float).T)
-    motion = BallPieces(run.pieces, context) if run.pieces is not None else None
+    motion = BallPieces(run.pieces, context, exact_times) if run.pieces is not None else None
     found = find_crossings(motion, events, exact_times[-1]) if motion is not None else {}
     return Trajectory(times, angles, rates, turns, angle, energy, error, accuracy, f"taylor, {used} digits in {kind}",
                       run.steps, best_order(used), chain, found, motion if dense else None)

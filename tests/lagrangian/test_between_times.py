@@ -130,12 +130,27 @@ def test_a_crossing_where_two_steps_meet_belongs_to_one_of_them(digits):
 
 @each_kind
 def test_what_happens_after_the_last_time_is_not_reported(digits):
-    """The last step is longer than the motion: theta = t passes 5/4 after it ends."""
+    """The last step is longer than the motion: theta = t would pass 5/4 within it, after the motion ends."""
     events = {"inside": Crossing(1, Rational(3, 4)), "after": Crossing(1, Rational(5, 4))}
     motion = simulate(FREE, [0], [1], [0, 1], digits=digits, dense=True, events=events)
 
-    assert motion.at(1.25)[0][0] == 1.25
+    assert motion.interpolant.length[-1] > 1.25
     assert motion.events["inside"].tolist() == [0.75] and motion.events["after"].shape == (0,)
+
+
+@each_kind
+@pytest.mark.parametrize("times", [[0, Rational(1, 10)], [Rational(1, 3), Rational(1, 10)], [Rational(1, 10), pi / 5],
+                                   [3]], ids=str)
+def test_states_are_known_at_the_first_and_the_last_time_and_between_them(digits, times):
+    """Also at the floats next to exact times, whose steps lead farther; forwards, backwards and at rest."""
+    motion = simulate(TWO, [1, 2], [0, 1], times, digits=digits, dense=True)
+    least, largest = sorted(motion.times[[0, -1]])
+    states = [*(motion.at(x)[0] for x in times), *motion.at(motion.times)[0]]
+
+    assert all(abs(x - y) < 1e-15 for x, y in zip(np.ravel(states), np.ravel([*motion.theta, *motion.theta])))
+    for beyond in (np.nextafter(least, -math.inf), least - 1e-3, np.nextafter(largest, math.inf), largest + 1e-3):
+        with pytest.raises(QuantityError, match="known from t ="):
+            motion.at(beyond)
 
 
 @each_kind
