@@ -2,7 +2,7 @@
 
 One base, :class:`LagrangianError`, and one name for each kind of claim that fails.  Every message says the
 claim, the value that contradicts it, and what would do instead.  Each class is also a ``ValueError`` (the
-kind of object is right, its value is not) or a ``TypeError`` (the kind of object is wrong).
+kind of object is right, its value is not), a ``TypeError`` (the kind of object is wrong) or an ``ImportError``.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ __all__ = [
     "NotASceneError",
     "NotAnEquilibriumError",
     "NotDecoupledError",
+    "NotInstalledError",
     "NotPeriodicError",
     "QuantityError",
     "SceneError",
@@ -61,6 +62,10 @@ class NotAnEquilibriumError(LagrangianError, ValueError):
 
 class InhomogeneousError(LagrangianError, ValueError):
     """The linear equations have a remainder, and the form asked for has no place for it."""
+
+
+class NotInstalledError(LagrangianError, ImportError):
+    """The work asked for is done by a package that is not installed."""
 
 
 class NotPeriodicError(LagrangianError, ValueError):

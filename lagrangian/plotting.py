@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import numpy as np
+
+from .errors import QuantityError
+from .optional import optional
 
 __all__ = ["plot"]
 
@@ -16,11 +18,16 @@ def plot(trajectory: Any, axes: Any = None) -> Any:
     """Angles over time (an image for long chains) above the estimated error and the energy drift.
 
     ``axes`` is None or a pair of matplotlib axes.  Where the accuracy asked for is lost the background is grey.
+    Raises QuantityError for anything else than a pair, NotInstalledError without matplotlib.
     """
     if axes is None:
-        _, axes = import_module("matplotlib.pyplot").subplots(2, 1, sharex=True, height_ratios=[3, 1], figsize=(8, 6),
-                                                              layout="constrained")
-    upper, lower = axes
+        pyplot = optional("matplotlib.pyplot", "a picture of a motion")
+        _, axes = pyplot.subplots(2, 1, sharex=True, height_ratios=[3, 1], figsize=(8, 6), layout="constrained")
+    try:
+        upper, lower = axes
+    except (TypeError, ValueError):
+        raise QuantityError(f"angles and their error are drawn in a pair of axes, and axes is {axes!r}: give "
+                            f"pyplot.subplots(2)[1].") from None
     times, theta = (np.asarray(x, dtype=float) for x in (trajectory.times, trajectory.theta))
     if theta.shape[1] <= MANY:
         for k, angle in enumerate(theta.T, 1):

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from .animation import animate
 from .errors import QuantityError
+from .optional import optional
 from .plotting import plot
 
 __all__ = ["Trajectory"]
@@ -100,8 +100,8 @@ class Trajectory:
         return np.concatenate([start, x], axis=1), np.concatenate([start, y], axis=1)
 
     def to_xarray(self) -> Any:
-        """An ``xarray.Dataset`` over time and rod (1, ..., n); needs xarray."""
-        xarray = import_module("xarray")
+        """An ``xarray.Dataset`` over time and rod (1, ..., n); raises NotInstalledError without xarray."""
+        xarray = optional("xarray", "a motion as a labelled data set")
         rod = np.arange(1, self.theta.shape[1] + 1)
         both, units = ("time", "rod"), {"theta": "rad", "omega": "rad/s", "energy": "J", "error": "rad"}
         data = {"theta": (both, self.theta), "omega": (both, self.omega), "turns": (both, self.turns),
@@ -115,7 +115,12 @@ class Trajectory:
         return plot(self, axes)
 
     def animate(self, path: Any = None, seconds: float | None = None, frames: int = 150, trail: int = 40) -> Any:
-        """A film of the chain: a matplotlib animation, written to ``path`` if it ends in .gif or .html."""
+        """A film of the chain: a matplotlib animation, written to ``path`` if it ends in .gif or .html.
+
+        It runs ``seconds``, or the time of the motion, in at most ``frames`` pictures, each with the path of the tip
+        over the last ``trail`` of them.  Raises QuantityError where these make no film, NotInstalledError without
+        matplotlib.
+        """
         return animate(self, path, seconds, frames, trail)
 
     def __repr__(self) -> str:

@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+import sys
 from pathlib import Path
 
 import mpmath
@@ -16,6 +18,7 @@ from lagrangian import (
     DriveError,
     NotAnEquilibriumError,
     NotASceneError,
+    NotInstalledError,
     QuantityError,
     Rod,
     Scene,
@@ -26,6 +29,7 @@ from lagrangian import (
     flips,
     simulate,
 )
+from lagrangian.animation import timing
 
 t = Symbol("t")
 CASES = json.loads((Path(__file__).parent / "cases" / "trajectories.json").read_text())["cases"]
@@ -388,6 +392,84 @@ def test_a_trajectory_becomes_a_dataset_and_pictures(tmp_path):
 
 
 CHAIN = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], upright=False)
+SWING = simulate(CHAIN, [1, 1], [0, 0], np.linspace(0, 1, 21))
+
+
+@given(st.fractions(Rational(1, 50), 10**6), st.integers(1, 500))
+def test_a_film_runs_the_seconds_asked_to_half_a_frame(seconds, most):
+    """Frames last whole hundredths of a second, which GIF counts in, and two at least: browsers slow down less."""
+    count, each = timing(seconds, most)
+
+    assert 1 <= count <= most and each % 10 == 0 and each >= 20
+    assert abs(count * each - 1000 * seconds) <= each / 2
+
+
+@pytest.mark.parametrize(("seconds", "frames", "length"), [(None, 5, 1000), (1, 3, 1020), (100, 4, 100_000),
+                                                           (0.1, 150, 100)])
+def test_written_films_last_as_long_as_asked(tmp_path, seconds, frames, length):
+    """The times written in the files; the ending may be in capitals."""
+    pytest.importorskip("matplotlib.pyplot").switch_backend("Agg")
+    image = pytest.importorskip("PIL.Image")
+    SWING.animate(tmp_path / "film.GIF", seconds, frames)
+    SWING.animate(tmp_path / "film.html", seconds, frames)
+    page, total = (tmp_path / "film.html").read_text(), 0
+    with image.open(tmp_path / "film.GIF") as film:
+        for k in range(film.n_frames):
+            film.seek(k)
+            total += film.info["duration"]
+    interval = re.search(r"new Animation\(frames, img_id, slider_id, ([0-9.]+),", page)
+
+    assert total == length == float(interval[1]) * len(re.findall(r"frames\[\d+\] = ", page))
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    ({"seconds": 0}, ["0.02 s at least", "is 0"]),
+    ({"seconds": -1}, ["-1"]),
+    ({"seconds": math.nan}, ["nan"]),
+    ({"seconds": symbols("x")}, ["x"]),
+    ({"frames": 0}, ["frames is 0", "from 1 on"]),
+    ({"frames": -1}, ["frames is -1"]),
+    ({"frames": 2.5}, ["2.5"]),
+    ({"trail": -3}, ["trail is -3", "from 0 on"]),
+    ({"trail": True}, ["True"]),
+    ({"path": 5}, [".gif or .html", "5"]),
+])
+def test_what_makes_no_film_is_refused(arguments, words):
+    """Before anything is drawn."""
+    with pytest.raises(QuantityError) as refusal:
+        SWING.animate(**arguments)
+
+    assert all(word in str(refusal.value) for word in words)
+
+
+def test_a_motion_of_one_time_is_no_film():
+    """It has a state, and no motion."""
+    with pytest.raises(QuantityError, match=r"single time 0\.0"):
+        simulate(CHAIN, [1, 1], [0, 0], [0]).animate()
+
+
+def test_one_axes_are_not_the_two_of_a_picture():
+    """Angles are drawn above their error."""
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    pyplot.switch_backend("Agg")
+    figure, axes = pyplot.subplots()
+    for wrong in (axes, [axes], 3):
+        with pytest.raises(QuantityError, match="a pair of axes"):
+            SWING.plot(wrong)
+    pyplot.close(figure)
+
+
+@pytest.mark.parametrize(("package", "method"), [("matplotlib", "plot"), ("matplotlib", "animate"),
+                                                 ("xarray", "to_xarray")])
+def test_a_package_that_is_not_installed_is_named(monkeypatch, package, method):
+    """With what to do; it is an ImportError too."""
+    for name in [name for name in sys.modules if name.startswith(f"{package}.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(NotInstalledError, match=f"needs {package}, which is not installed: pip install {package}"):
+        getattr(SWING, method)()
+
+    assert issubclass(NotInstalledError, ImportError)
 
 
 @pytest.mark.parametrize(("arguments", "options", "error", "words"), [
