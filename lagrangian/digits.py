@@ -15,12 +15,12 @@ from math import ceil, exp, inf, log
 from typing import Any, NamedTuple
 
 import flint
-import mpmath
 import numpy as np
 from sympy import Integer
 
 from .arithmetic import Balls
 from .chain import CompiledChain
+from .contexts import Context
 from .errors import QuantityError
 from .machine import rebound
 from .precision import working
@@ -59,6 +59,16 @@ class Piece:
     length: Any
     angles: tuple[Any, ...]
 
+    def __reduce__(self) -> Any:
+        numbers = [[self.start, self.length], *(angle.coeffs() for angle in self.angles)]
+        return _read, ([[tuple(map(int, x.man_exp())) for x in part] for part in numbers],)
+
+
+def _read(numbers: Any) -> Piece:
+    """A piece from mantissas and exponents, exactly, since python-flint's numbers cannot be pickled."""
+    (start, length), *angles = ([flint.arb(flint.arf(x)) for x in part] for part in numbers)
+    return Piece(start, length, tuple(map(flint.arb_poly, angles)))
+
 
 class DigitRun(NamedTuple):
     """Angles with turns and rates, shape (times, n), mpmath numbers; steps made; and the steps, where kept."""
@@ -78,8 +88,7 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
     step.  Truncation is below ``10**-digits`` a step, and in balls rounding too.  Raises DriveError where the support's
     motion has no Taylor series, QuantityError where a step shrinks to nothing.
     """
-    context = mpmath.mp.clone()
-    context.dps = digits
+    context = Context(digits)
     with working(bits_for(digits)):
         state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
         motion = (steps or Steps)(chain, state, digits, order)
@@ -170,8 +179,8 @@ class Steps:
     def piece(self) -> Piece:
         """The step from here; state and polynomials without their radii."""
         rates = middle(self.rates()).tolist()
-        angles = (flint.arb_poly(rate).integral() + theta for rate, theta in zip(rates, self.theta))
-        return Piece(self.start, self.length, tuple(angles))
+        angles = ((flint.arb_poly(rate).integral() + theta).coeffs() for rate, theta in zip(rates, self.theta))
+        return Piece(self.start, self.length, tuple(flint.arb_poly(middle(angle).tolist()) for angle in angles))
 
     def _expand(self, end: Any) -> None:
         n = len(self.chain)

@@ -170,10 +170,13 @@ class BallPieces(Pieces):
         self.context, self.bits = context, bits_for(context.dps)
         with working(self.bits):
             ends = self.given([x for end in (times[0], times[-1]) for x in (end, float(end))])
-        self.span = ends.min(), ends.max()
+        self.times, self.span = [times[0], times[-1]], (ends.min(), ends.max())
         self.start, self.length = (np.array(part, dtype=object) for part in ([p.start for p in pieces],
                                                                              [p.length for p in pieces]))
         self.angles = [p.angles for p in pieces]
+
+    def __reduce__(self) -> Any:
+        return BallPieces, (list(map(Piece, self.start, self.length, self.angles)), self.context, self.times)
 
     def given(self, t: Any) -> Any:
         return self.plain(Balls().array(Balls().number(x) for x in _exact(t)))

@@ -15,10 +15,12 @@ from .plotting import plot
 
 __all__ = ["Trajectory"]
 
+ARRAYS = ("times", "theta", "omega", "turns", "wrapped", "energy", "error")
 
-@dataclass(frozen=True, repr=False)
+
+@dataclass(frozen=True, repr=False, eq=False)
 class Trajectory:
-    """The motion of a chain at given times, with an estimate of its own error.  Immutable.
+    """The motion of a chain at given times, with an estimate of its own error.  Immutable; ``==`` is identity.
 
     Attributes
     ----------
@@ -49,6 +51,15 @@ class Trajectory:
     chain: Any
     events: Mapping[str, Any] = field(default_factory=dict)
     interpolant: Any = None
+
+    def __post_init__(self) -> None:
+        for name in ARRAYS:
+            object.__setattr__(self, name, _locked(getattr(self, name)))
+        object.__setattr__(self, "events", {name: _locked(times) for name, times in self.events.items()})
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # arrays that were pickled can be written to again
 
     def __len__(self) -> int:
         return len(self.times)
@@ -103,10 +114,10 @@ class Trajectory:
         """An ``xarray.Dataset`` over time and rod (1, ..., n); raises NotInstalledError without xarray."""
         xarray = optional("xarray", "a motion as a labelled data set")
         rod = np.arange(1, self.theta.shape[1] + 1)
-        both, units = ("time", "rod"), {"theta": "rad", "omega": "rad/s", "energy": "J", "error": "rad"}
-        data = {"theta": (both, self.theta), "omega": (both, self.omega), "turns": (both, self.turns),
-                "energy": ("time", self.energy), "error": ("time", self.error)}
-        variables = {name: (*value, {"units": units[name]} if name in units else {}) for name, value in data.items()}
+        units = {"theta": "rad", "omega": "rad/s", "energy": "J", "error": "rad"}
+        variables = {name: (("time", "rod")[:getattr(self, name).ndim], getattr(self, name).copy(),
+                            {"units": units[name]} if name in units else {})
+                     for name in ("theta", "omega", "turns", "energy", "error")}
         notes = {"method": self.method, "accuracy": self.accuracy, "verdict": self.verdict, "model": self.chain.model}
         return xarray.Dataset(variables, {"time": self.times, "rod": rod}, notes)
 
@@ -127,3 +138,10 @@ class Trajectory:
         span = f"{float(self.times[0]):.6g} to {float(self.times[-1]):.6g}"
         return (f"Trajectory({self.theta.shape[1]} rods, {len(self)} times from {span}, {self.method}, {self.steps} "
                 f"steps, error {float(self.error[-1]):.1e} rad)")
+
+
+def _locked(array: Any) -> Any:
+    """The same array, read only."""
+    found = np.asarray(array).view()
+    found.flags.writeable = False
+    return found

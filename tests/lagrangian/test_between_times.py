@@ -1,6 +1,8 @@
 """States between the times and events, in float64 and with digits: closed forms, second runs, runs backwards."""
 
+import copy
 import math
+import pickle
 from fractions import Fraction
 
 import mpmath
@@ -229,3 +231,33 @@ def test_threads_wait_for_each_other_and_change_no_digit():
 
     wanted = [40, 80, 200] * 2
     assert in_threads(numbers, wanted) == [numbers(digits) for digits in wanted] and ctx.prec == before
+
+
+@each_kind
+@pytest.mark.parametrize("dense", [False, True])
+@pytest.mark.parametrize("copied", [lambda x: pickle.loads(pickle.dumps(x)), copy.deepcopy], ids=["pickle", "deepcopy"])
+def test_a_motion_that_was_kept_in_a_file_is_the_same_motion(digits, dense, copied):
+    """Every digit of states, events and what lies between, in numbers of one context; == and hash are identity."""
+    motion = simulate(TWO, [2, 1], [0, 1], [HALF, 0], digits=digits, dense=dense, events={"x": Crossing(1, 1.75)})
+    again = copied(motion)
+
+    for name in ("times", "theta", "omega", "turns", "wrapped", "energy", "error"):
+        assert getattr(again, name).tolist() == getattr(motion, name).tolist()
+    assert again.events["x"].tolist() == motion.events["x"].tolist() and len(again.events["x"]) == 1
+    assert again.method == motion.method and again.chain.energy_scale == motion.chain.energy_scale
+    if dense:
+        assert all((x == y).all() for x, y in zip(again.at([0.1, 1 / 3]), motion.at([0.1, 1 / 3]), strict=True))
+    if digits is not None:
+        assert {x.context.dps for x in again.theta.flat} == {digits} and len({x.context for x in again.theta.flat}) == 1
+    assert motion == motion and again != motion and len({again, motion}) == 2
+
+
+@each_kind
+def test_a_motion_cannot_be_written_to(digits):
+    """Nor one that was read from a file."""
+    motion = simulate(FREE, [0], [1], [0, 1], digits=digits, events={"x": Crossing(1, HALF)})
+    for found in (motion, pickle.loads(pickle.dumps(motion))):
+        for array in (found.times, found.theta, found.omega, found.turns, found.wrapped, found.energy, found.error,
+                      found.events["x"]):
+            with pytest.raises(ValueError, match="read-only"):
+                array[0] = 7
