@@ -11,12 +11,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
 from math import ceil, floor
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 from sympy import Integer, pi
 
-from .errors import QuantityError, SceneError
+from .chain import CompiledChain
+from .errors import NotASceneError, QuantityError, SceneError
 from .pieces import Pieces
 from .precision import working
 from .quantities import quantity
@@ -38,7 +40,7 @@ class Crossing:
     angle : the value, modulo a turn, as the exact number it is: ``pi/2`` is pi/2, a float is its dyadic; rad
     direction : 0 for both ways, 1 for growing angles, -1 for shrinking ones
 
-    Raises QuantityError or TextError where the angle is no number.
+    Raises QuantityError where one of them is none of these, TextError where the angle is text.
 
     >>> Crossing(1, 0.5).angle, Crossing(2, pi/2).angle
     (1/2, pi/2)
@@ -49,23 +51,45 @@ class Crossing:
     direction: int = 0
 
     def __post_init__(self) -> None:
+        if not _is_whole(self.rod) or self.rod < 1:
+            raise QuantityError(f"a crossing's rod is {self.rod!r}: give its number, 1 for that at the support.")
+        if not _is_whole(self.direction) or self.direction not in (-1, 0, 1):
+            raise QuantityError(f"a crossing's direction is {self.direction!r}: give 0 for both ways, 1 for growing "
+                                f"angles or -1 for shrinking ones.")
+        for name in ("rod", "direction"):
+            object.__setattr__(self, name, int(getattr(self, name)))
         object.__setattr__(self, "angle", quantity(self.angle, "angle"))
         if not self.angle.is_number:
             raise QuantityError(f"a crossing's angle is {self.angle}, which is no number: give one, such as pi/2.")
 
 
+def _is_whole(number: Any) -> bool:
+    return isinstance(number, Integral) and not isinstance(number, bool)
+
+
 def flips(chain: Any) -> dict[str, Crossing]:
-    """One :class:`Crossing` a rod, ``"flip 1"`` to ``"flip n"``: it passes the upward vertical."""
+    """One :class:`Crossing` a rod, ``"flip 1"`` to ``"flip n"``: it passes the upward vertical.
+
+    Raises NotASceneError for anything else than a :class:`CompiledChain`.
+    """
+    if not isinstance(chain, CompiledChain):
+        raise NotASceneError(f"flips are those of a CompiledChain's rods, and this is {chain!r}: give "
+                             f"scene.compile(values).")
     top = Integer(0) if chain.upright else pi
     return {f"flip {k}": Crossing(k, top) for k in range(1, len(chain) + 1)}
 
 
 def checked(events: Mapping[str, Crossing] | None, n: int) -> Mapping[str, Crossing]:
     """The events asked for, each a :class:`Crossing` of one of n rods; raises SceneError."""
-    for event in (events or {}).values():
+    if events is None:
+        return {}
+    if not isinstance(events, Mapping):
+        raise SceneError(f"events have names, and events is {events!r}: give flips(chain), or a mapping such as "
+                         f"{{'down': Crossing(1, 0)}}.")
+    for event in events.values():
         if not isinstance(event, Crossing) or not 1 <= event.rod <= n:
             raise SceneError(f"an event is a Crossing of one of the rods 1 to {n}, and this one is {event!r}.")
-    return events or {}
+    return events
 
 
 def find_crossings(motion: Pieces, events: Mapping[str, Crossing], end: Any) -> dict[str, Any]:

@@ -12,7 +12,19 @@ from flint import ctx
 from sympy import Float, Integer, Matrix, Rational, Symbol, cos, pi
 
 from fastpicard import FloquetMatrix
-from lagrangian import CompiledChain, Crossing, QuantityError, SceneError, TextError, flips, simulate
+from lagrangian import (
+    CompiledChain,
+    Crossing,
+    NotASceneError,
+    QuantityError,
+    Rod,
+    Scene,
+    SceneError,
+    TextError,
+    euler_lagrange,
+    flips,
+    simulate,
+)
 from tests.conftest import in_threads
 
 t = Symbol("t")
@@ -179,6 +191,40 @@ def test_a_crossing_has_a_number_for_its_angle(angle, error):
     """Text, symbols and infinities are refused where the crossing is made."""
     with pytest.raises(error):
         Crossing(1, angle)
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    ((1.0, 1), ["rod is 1.0", "its number"]),
+    (("1", 1), ["rod is '1'"]),
+    ((True, 1), ["rod is True"]),
+    ((0, 1), ["rod is 0"]),
+    ((1, 1, "up"), ["direction is 'up'", "-1 for shrinking"]),
+    ((1, 1, 5), ["direction is 5"]),
+    ((1, 1, True), ["direction is True"]),
+    ((1, 1, 0.5), ["direction is 0.5"]),
+    ((1, 1, None), ["direction is None"]),
+])
+def test_a_crossing_has_the_number_of_a_rod_and_a_direction(arguments, words):
+    """What is neither is refused where the crossing is made; whole numbers of NumPy and SymPy are numbers too."""
+    with pytest.raises(QuantityError) as refusal:
+        Crossing(*arguments)
+
+    assert all(word in str(refusal.value) for word in words)
+    assert Crossing(np.int64(1), 1, Integer(-1)) == Crossing(1, 1, -1)
+
+
+@pytest.mark.parametrize("events", [[Crossing(1, 1)], [], Crossing(1, 1), "flips", 5, {"down": 1}])
+def test_events_have_names(events):
+    """They come as a mapping."""
+    with pytest.raises(SceneError, match="event"):
+        simulate(ROD, [1], [0], [0, 1], events=events)
+
+
+@pytest.mark.parametrize("system", [euler_lagrange(Scene([Rod.bob(1, 1)])), "rods", None])
+def test_flips_are_those_of_a_compiled_chain(system):
+    """Equations have no rods that turn over; their chain has."""
+    with pytest.raises(NotASceneError, match=r"scene\.compile"):
+        flips(system)
 
 
 def test_events_are_checked_before_the_motion_is_followed():
