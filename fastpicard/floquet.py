@@ -29,7 +29,7 @@ from fastpicard.harmonics import Harmonics, harmonics, is_box, numbers_in
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, read_matrix
 from fastpicard.modes import Modes
-from fastpicard.period import check_period, turns_of
+from fastpicard.period import check_period, whole_turns
 from fastpicard.picard import check_order
 from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
@@ -118,7 +118,8 @@ class FloquetMatrix:
     def turns(self) -> int:
         """How many whole periods of ``P`` there are in ``T``."""
         frequencies = {angle[0] for row in self.P.rows for modes in row for _, angle, _ in modes if angle[0]}
-        return max(1, gcd(*(int(turns_of(q, self.length)[ONE].p) for q in frequencies)))
+        counts = [whole_turns(q, self.length) for q in frequencies]
+        return max(1, gcd(*(1 if count is None else count for count in counts)))
 
     def to_order(self, n: int) -> FloquetMatrix:
         """The same for order ``n``, at the cost of the increments that are new."""

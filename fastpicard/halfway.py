@@ -28,17 +28,18 @@ from __future__ import annotations
 from typing import Any
 
 from flint import fmpq
-from sympy import pi
 
 from fastpicard import modes as algebra
 from fastpicard.coordinates import Problem
+from fastpicard.errors import BadInputError
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import reversing_signs
 from fastpicard.increments import to_modes, without_frequencies
 from fastpicard.iteration import PackedIncrements
 from fastpicard.matrix import SeriesMatrix
-from fastpicard.modes import Modes, orient
-from fastpicard.ring import ONE, Polynomial, generator, multiply
+from fastpicard.modes import Linear, Modes, orient
+from fastpicard.period import turns_of, whole_turns
+from fastpicard.ring import ONE, Polynomial, multiply, to_expression
 from fastpicard.spectrum import symplectic_forms
 
 Signs = tuple[int, ...]
@@ -102,17 +103,23 @@ def _half_turns(F: FloquetMatrix, k: int, i: int, j: int) -> Modes:
         return to_modes(problem, [entry])
     modes: Modes = {}
     for (kind, (frequency, phase), monomial), f in found.entry(k, i, j).items():
-        turns = multiply(multiply(algebra.as_polynomial(frequency), F.length), _PER_TURN)
+        odd = _turns(F, frequency) % 2
         turned, angle = orient(((), phase))
-        algebra.add_reflected(modes, kind, turned, angle, monomial, -f if turns and int(turns[ONE].p) % 2 else f)
+        algebra.add_reflected(modes, kind, turned, angle, monomial, -f if odd else f)
     return modes
 
 
-_PER_TURN: Polynomial = {((generator(pi), -1),): fmpq(1, 2)}
+def _turns(F: FloquetMatrix, frequency: Linear) -> int:
+    """How many whole turns an angle of this frequency makes in the period."""
+    turns = whole_turns(frequency, F.length)
+    if turns is None:
+        count = to_expression(turns_of(frequency, F.length))
+        raise BadInputError("after half a period every angle must have made a known number of half turns, but one has "
+                            f"made {count} of them.  Put a number in place of the Symbol.")
+    return turns
 
 
 def _unit_turns(F: FloquetMatrix, problem: Problem) -> int:
     """How many whole turns the unit of frequency makes in the period; every frequency is a multiple of it."""
-    monomial, rate = problem.coordinates.unit
-    turns = multiply(multiply({monomial: rate}, F.length), _PER_TURN)
-    return int(turns[ONE].p) if list(turns) == [ONE] else 0
+    moving = any(angle[0] for row in F.P.rows for modes in row for _, angle, _ in modes)
+    return _turns(F, algebra.linear(dict([problem.coordinates.unit]))) if moving else 0

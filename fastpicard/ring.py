@@ -46,6 +46,8 @@ _related: set[int] = set()  # the generators with a relation: primes under a roo
 _cosines: dict[int, tuple[Fraction, Fraction]] = {}  # (x, e) of the generators whose power e is cos(pi x)
 _sums: dict[int, Polynomial] = {}  # what the generators are that are polynomials in others
 _UNIT = fmpq(1)
+_TINY = 1e-12
+_LARGEST_DENOMINATOR = 10_000
 
 
 def generator(expression: Expr) -> int:
@@ -237,6 +239,31 @@ def _without_sum(terms: Polynomial, number: int) -> Polynomial:
     return result
 
 
+def rational_value(terms: Polynomial) -> Any | None:
+    """The rational number (fmpq) that a polynomial always is, or None: read off one value, then proved."""
+    if not terms or list(terms) == [ONE]:
+        return terms.get(ONE, fmpq(0))
+    if not has_relations(terms):
+        return None
+    value = _sample(terms)
+    if value is None or abs(value.imag) > _TINY:
+        return None
+    near = Fraction(value.real).limit_denominator(_LARGEST_DENOMINATOR)
+    rest, found = dict(terms), fmpq(near.numerator, near.denominator)
+    add_term(rest, ONE, -found)
+    return found if is_zero(rest) else None
+
+
+def _sample(terms: Polynomial) -> complex | None:
+    """The value where every symbol is some number that its assumptions allow; None where that is no finite number."""
+    e = to_expression(terms)
+    symbols = sorted(e.free_symbols, key=str)
+    values = {x: (-1 if x.is_negative else 1) * sympy.Rational(sympy.prime(k), 1 if x.is_integer else 7)
+              for k, x in enumerate(symbols, 5)}
+    value = e.subs(values).evalf(20)
+    return complex(value) if value.is_number and value.is_finite else None
+
+
 def normal(terms: Polynomial) -> Polynomial:
     """The same number, with the cosines of rational multiples of pi in normal form."""
     result: Polynomial = {}
@@ -291,6 +318,9 @@ def _monomial_of(parts: tuple[Any, ...]) -> Monomial:
 
 def _is_zero_to_sympy(terms: Polynomial) -> bool:
     """Whether SymPy can show that functions of symbols cancel; what it cannot decide is not zero."""
+    value = _sample(terms)
+    if value is not None and abs(value) > _TINY:
+        return False
     numerator = sympy.fraction(sympy.together(to_expression(terms)))[0].expand()
     if numerator == 0:
         return True

@@ -795,6 +795,10 @@ def test_a_period_is_an_exact_positive_number(period):
         ([[0, 1], [t**2, 0]], 2 * pi, "grows"),
         ([[sin(t + a)]], pi, "2*pi"),
         ([[0, 1], [sin(3 * t / 7), 0]], 2 * pi, "14*pi/3"),
+        ([[cos((a - 1) * t) + sin(3 * (a - 1) * t)]], 2 * pi, "2*pi/(a - 1)"),
+        ([[cos((a - 1) * t) + cos(a * t)]], 2 * pi / (a - 1), "no common period"),
+        ([[cos((a - 1) * t)]], pi / (a - 1), "makes 1/2 of a turn"),
+        ([[cos(Symbol("n", integer=True) * t / 2)]], 2 * pi, "makes n/2 of a turn"),
     ],
     ids=shown,
 )

@@ -9,9 +9,11 @@ import pytest
 import sympy
 from flint import arb
 from hypothesis import given, strategies as st
-from sympy import Matrix, Rational, S, cos, pi, sin, sqrt
+from sympy import Matrix, Rational, S, Symbol, cos, exp, log, pi, sin, sqrt
 
-from fastpicard import FloquetMatrix, FundamentalMatrix, PoissonSeries
+from fastpicard import BadInputError, FloquetMatrix, FundamentalMatrix, PoissonSeries
+from fastpicard.halfway import half_period
+from fastpicard.writing import write
 from tests.oracles import distance, true_fundamental_matrix, truncation_bound, within
 from tests.strategies import VALUES, a, b, c, matrices, phi, t, w
 
@@ -49,6 +51,52 @@ def test_any_period_will_do(scale, period):
     found, at_period = FloquetMatrix(P, t, 4, period).as_matrix(), FundamentalMatrix(P, t, 4)(period)
 
     assert all(PoissonSeries(x, t) == PoissonSeries(y, t) for x, y in zip(found, at_period))
+
+
+@pytest.mark.parametrize(
+    "rate, period",
+    [
+        (w - 1, 2 * pi / (w - 1)),
+        (1 / (1 + w), 2 * pi * (1 + w)),
+        (2 * pi / (a + b), a + b),
+        (exp(a), 2 * pi * exp(-a)),
+        (2**a, 2 * pi / 2**a),
+        (a - b, 4 * pi / (a - b)),
+        (w + w**2, 2 * pi / (w + w**2)),
+        (1 + pi, 2 * pi / (1 + pi)),
+        (1 + cos(pi / 7), 2 * pi / (1 + cos(pi / 7))),
+        (log(4), 2 * pi / log(2)),
+        (Symbol("n", integer=True), 2 * pi),
+    ],
+    ids=str,
+)
+def test_a_period_may_be_any_expression_of_which_the_frequency_makes_whole_turns(rate, period):
+    """Whatever form the quotient has; the mean of 1 + cos(rate t) is 1, so the first iterate is 1 + T."""
+    F = FloquetMatrix([[1 + c * cos(rate * t)]], t, 1, period)
+
+    assert PoissonSeries(F.trace(), t) == 1 + period
+
+
+def test_turns_are_counted_whatever_form_the_frequency_has():
+    """log(4) t makes one turn in pi/log(2): after half of that its cosine is -1, as that of w t after pi/w."""
+    found = FloquetMatrix([[0, 1], [-a - b * cos(log(4) * t), 0]], t, 3, pi / log(2))
+    named = FloquetMatrix([[0, 1], [-a - b * cos(w * t), 0]], t, 3, 2 * pi / w)
+    pairs = [(write(x, t), write(y, t)) for left, right in zip(half_period(found), half_period(named))
+             for x, y in zip(left, right)]
+
+    assert found.turns == 1 and found.over(1, 3).turns == 1
+    assert FloquetMatrix([[cos(log(4) * t)]], t, 1, 2 * pi / log(2)).turns == 2
+    assert all(PoissonSeries(x, t) == y.subs(w, log(4)) for x, y in pairs)
+
+
+def test_a_number_of_turns_that_depends_on_a_symbol_is_whole_but_not_even_or_odd():
+    """n whole turns are a period; half of it is refused by name."""
+    n = Symbol("n", integer=True)
+    F = FloquetMatrix([[0, 1], [-a - b * cos(n * t), 0]], t, 3)
+
+    assert F.turns == 1
+    with pytest.raises(BadInputError, match="made n of them"):
+        half_period(F)
 
 
 @given(matrices(2, rates=whole), st.integers(0, 4), st.integers(0, 4))
