@@ -85,7 +85,13 @@ def _combine(left: Linear, right: Linear, sign: int) -> Linear:
 @lru_cache(maxsize=1 << 16)
 def add_angles(left: Angle, right: Angle, sign: int) -> tuple[bool, Angle]:
     """``left + sign * right`` with its leading coefficient made positive: ``(was reflected, angle)``."""
-    return orient((_combine(left[0], right[0], sign), _combine(left[1], right[1], sign)))
+    return orient((settled(_combine(left[0], right[0], sign)), _combine(left[1], right[1], sign)))
+
+
+@lru_cache(maxsize=1 << 14)
+def settled(frequency: Linear) -> Linear:
+    """A frequency, or none where its terms cancel by relations between parameters: resonance, not a division by 0."""
+    return () if is_zero(as_polynomial(frequency)) else frequency
 
 
 def orient(angle: Angle) -> tuple[bool, Angle]:
@@ -272,10 +278,15 @@ def mode_antiderivative(frequency: Linear, f: tuple[Any, ...]) -> tuple[tuple[Mo
     """
     if not frequency:
         return ((ONE, (fmpq(0), *(-c for c in f))),)
-    inverse = reciprocal(as_polynomial(frequency))
+    inverse = _inverse(frequency)
     if list(inverse) == [ONE]:
         return ((ONE, _recurrence(inverse[ONE], f)),)
     return _symbolic_recurrence(inverse, f)
+
+
+@lru_cache(maxsize=1 << 12)
+def _inverse(frequency: Linear) -> Polynomial:
+    return reciprocal(as_polynomial(frequency))
 
 
 def _recurrence(inverse: Any, f: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -285,7 +285,7 @@ def _linear_argument(argument: Expr, t: Symbol) -> tuple[Angle, Any] | None:
         if f[0]:
             phase[monomial] = f[0]
     half_turns = phase.pop(((generator(pi), 1),), fmpq(0))
-    return (algebra.linear(normal(frequency)), algebra.linear(normal(phase))), half_turns
+    return (algebra.settled(algebra.linear(normal(frequency))), algebra.linear(normal(phase))), half_turns
 
 
 def _trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes:

@@ -8,7 +8,7 @@ import sympy
 from hypothesis import given, strategies as st
 from sympy import I, Matrix, Rational, Symbol, cos, exp, pi, sin, sqrt
 
-from fastpicard import PoissonSeries, new_integrate
+from fastpicard import FundamentalMatrix, PoissonSeries, new_integrate
 from tests.oracles import closeness, plain_expression, plain_integral, quadrature, same_tree, vanishes
 from tests.strategies import VALUES, a, b, c, expressions, phi, plain_expressions, plain_series, rationals, t, t0, w
 
@@ -109,6 +109,36 @@ def test_a_frequency_that_becomes_zero_afterwards_is_the_limit():
         assert sympy.limit(generic.subs(t, 2), q, 0) == new_integrate(t**r, (t, 0, 2))
         assert new_integrate((t**r * cos(q * t)).subs(q, 0), t) == t ** (r + 1) / (r + 1)
         assert new_integrate((t**r * sin(q * t)).subs(q, 0), t) == 0
+
+
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        w / (w + 1) + 1 / (w + 1) - 1,
+        sympy.GoldenRatio - (1 + sqrt(5)) / 2,
+        sqrt(3 + 2 * sqrt(2)) - 1 - sqrt(2),
+        sympy.log(6) - sympy.log(2) - sympy.log(3),
+        sympy.cosh(a) ** 2 - sympy.sinh(a) ** 2 - 1,
+    ],
+    ids=str,
+)
+def test_a_frequency_that_vanishes_identically_is_no_frequency(nothing):
+    """Read as one or met as a sum: the power of t rises, and nothing is divided by."""
+    assert new_integrate(t * cos(nothing * t + phi), t) == t**2 * cos(phi) / 2
+    assert new_integrate(sin(nothing * t), t) == 0
+    left, *others = nothing.args
+    wave = PoissonSeries(cos(left * t), t) * PoissonSeries(cos(sympy.Add(*others) * t), t)
+    assert t / 2 in wave.integrate().as_expr().args
+
+
+def test_resonance_by_a_relation_between_parameters_is_resonance():
+    """w/(w + 1) + 1/(w + 1) = 1: the iterate with the symbol is, at w = 17/5, that of the system with the number."""
+    value = Rational(17, 5)
+    P = Matrix([[cos(w * t / (w + 1)) + cos(t / (w + 1)) + cos(t)]])
+    found = FundamentalMatrix(P, t, 3)[0, 0].evaluate(3, {w: value}, digits=30)
+    expected = FundamentalMatrix(P.subs(w, value), t, 3)[0, 0].evaluate(3, digits=30)
+
+    assert closeness(found, expected) < mpmath.mpf(10) ** -28
 
 
 def test_the_antiderivative_of_sin_holds_the_constant_of_the_article():
