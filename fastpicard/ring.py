@@ -16,7 +16,8 @@ normal form, see :mod:`fastpicard.cosines` and :func:`normal`.  A root that is n
 square root of a rational lies in none of those fields, which are abelian, and
 (Kummer) stays independent.  Generators that are themselves sums, such as
 ``1/(b + c)``, are multiplied out.  SymPy is asked only for what then remains,
-functions such as ``exp(a)``.
+functions such as ``exp(a)``, and only if some value does not tell them apart;
+what it cannot show to be zero is taken to be different from zero.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from typing import Any
 import sympy
 from flint import fmpq
 from sympy import Expr
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from fastpicard import cosines
 from fastpicard.errors import BadInputError
@@ -206,6 +208,16 @@ def _is_free(number: int) -> bool:
     return bool(e.is_Symbol or e.is_Integer) or e in (sympy.pi, sympy.E, sympy.I)
 
 
+def has_waves(monomials: Iterable[Monomial]) -> bool:
+    """Whether a generator occurs that holds a sine, cosine or tangent, but for cosines of rational multiples of pi."""
+    return any(_is_wave(g) for g in {g for monomial in monomials for g, _ in monomial})
+
+
+@lru_cache(maxsize=1 << 12)
+def _is_wave(number: int) -> bool:
+    return number not in _cosines and _expressions[number].has(TrigonometricFunction)
+
+
 def is_zero(terms: Polynomial) -> bool:
     """Whether a polynomial vanishes identically, relations between its generators included."""
     if not terms or not has_relations(terms):
@@ -326,6 +338,7 @@ def _is_zero_to_sympy(terms: Polynomial) -> bool:
         return True
     symbols = sorted(numerator.free_symbols, key=str)
     if symbols and not numerator.is_polynomial(*symbols):
-        return any(form.expand() == 0 for form in (sympy.radsimp(numerator), numerator.rewrite(sympy.exp)))
+        in_exponentials = sympy.fraction(sympy.together(numerator.rewrite(sympy.exp)))[0]
+        return any(form.expand() == 0 for form in (sympy.radsimp(numerator), in_exponentials))
     coefficients = sympy.Poly(numerator, *symbols, domain="EX").coeffs() if symbols else [numerator]
     return all(bool(c.equals(0)) for c in coefficients)
