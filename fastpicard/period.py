@@ -27,7 +27,7 @@ def check_period(matrix: SeriesMatrix, period: Any) -> Polynomial:
                             "Use an exact period such as 2*pi.")
     if expression.is_positive is False:
         raise BadInputError(f"the period must be positive, but it is {expression}.  Use 2*pi, say.")
-    length = as_polynomial(read_constant(expression, matrix.t, "the period"), "the period")
+    length = as_polynomial(read_constant(expression, matrix.t, "the period"))
     for i, row in enumerate(matrix.rows):
         for j, modes in enumerate(row):
             for (kind, angle, monomial), f in modes.items():

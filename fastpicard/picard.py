@@ -249,7 +249,7 @@ class PicardIterate:
 
 
 def _origin(t0: Any, t: Symbol) -> Polynomial:
-    return as_polynomial(read_constant(t0, t, "t0"), "t0")
+    return as_polynomial(read_constant(t0, t, "t0"))
 
 
 def fast_picard(P: Any, t: Symbol, x0: Any, n: int, t0: Any = 0) -> PicardIterate:

@@ -19,7 +19,7 @@ from sympy import Basic, Expr, I, Symbol, cos, exp, pi, sin
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError, NotInFamilyError
-from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Modes
+from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes
 from fastpicard.ring import (
     ONE,
     Monomial,
@@ -27,16 +27,15 @@ from fastpicard.ring import (
     add_term,
     fraction,
     generator,
-    monomial_expression,
     multiply,
     multiply_monomials,
     normal,
     power,
     rational,
     reciprocal,
+    to_expression,
     to_sympy_number,
 )
-from fastpicard.writing import angle_expression
 
 MAXIMAL_POWER = 10_000
 _INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo, sympy.AccumBounds)
@@ -275,17 +274,30 @@ def _read_trigonometric(e: Expr, t: Symbol) -> Modes:
 
 def _linear_argument(argument: Expr, t: Symbol) -> tuple[Angle, Any] | None:
     """``q t + phi + rho pi`` as ``((q, phi), rho)``, or None where the argument is not of this form."""
-    frequency: Polynomial = {}
-    phase: Polynomial = {}
-    for (_, angle, monomial), f in _read(argument, t).items():
-        if angle != NO_ANGLE or f.degree() > 1:
-            return None
-        if f[1]:
-            frequency[monomial] = -f[1]
-        if f[0]:
-            phase[monomial] = f[0]
+    modes = _read(argument, t)
+    if any(angle[0] or f.degree() > 1 for (_, angle, _), f in modes.items()):
+        return None
+    phase, frequency = _coefficient(modes, 0), _coefficient(modes, 1)
     half_turns = phase.pop(((generator(pi), 1),), fmpq(0))
     return (algebra.settled(algebra.linear(normal(frequency))), algebra.linear(normal(phase))), half_turns
+
+
+def _coefficient(modes: Modes, r: int) -> Polynomial:
+    """What stands before ``t**r / r!`` in a series without frequencies; constant cosines are generators in it."""
+    result: Polynomial = {}
+    for (kind, (_, start), monomial), f in modes.items():
+        sine, sign = algebra.function_of(kind, r)
+        for m, value in _wave_at_rest(sine, start).items() if f[r] else ():
+            factor, product = multiply_monomials(monomial, m)
+            add_term(result, product, f[r] * sign * value * factor)
+    return result
+
+
+@lru_cache(maxsize=1 << 12)
+def _wave_at_rest(sine: bool, phase: Linear) -> Polynomial:
+    value = (sin if sine else cos)(to_expression(algebra.as_polynomial(phase)))
+    sign, wave = value.as_coeff_Mul()
+    return {m: c * rational(sign) for m, c in ({ONE: fmpq(1)} if wave == 1 else power(wave, 1)).items()}
 
 
 def _trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes:
@@ -351,11 +363,6 @@ def shifted(modes: Modes, by: Polynomial, t: Symbol) -> Modes:
     return result
 
 
-def as_polynomial(modes: Modes, what: str) -> Polynomial:
-    """A constant series without sines and cosines as a polynomial in the parameters."""
-    for _, angle, monomial in modes:
-        if angle != NO_ANGLE:
-            inside = angle_expression(angle, pi) * monomial_expression(monomial)
-            raise BadInputError(f"{what} must be a polynomial in its symbols, but it contains {inside} under a sine "
-                                "or cosine.  Put a Symbol in its place.")
-    return {m: f[0] for (_, _, m), f in modes.items()}
+def as_polynomial(modes: Modes) -> Polynomial:
+    """A constant series as a polynomial in the parameters."""
+    return _coefficient(modes, 0)

@@ -66,6 +66,8 @@ def test_any_period_will_do(scale, period):
         (1 + pi, 2 * pi / (1 + pi)),
         (1 + cos(pi / 7), 2 * pi / (1 + cos(pi / 7))),
         (log(4), 2 * pi / log(2)),
+        (cos(phi), 2 * pi / cos(phi)),
+        (1 / cos(phi), 2 * pi * cos(phi)),
         (Symbol("n", integer=True), 2 * pi),
     ],
     ids=str,
