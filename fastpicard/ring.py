@@ -25,7 +25,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache
-from math import floor
+from math import floor, gcd, lcm
 from typing import Any
 
 import sympy
@@ -142,7 +142,8 @@ def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
 def reciprocal(terms: Polynomial) -> Polynomial:
     """``1 / terms``: a Laurent monomial where it can be, one new generator otherwise.
 
-    Sums of square roots are rationalised, ``1/(1 + sqrt(2)) = sqrt(2) - 1``.
+    Sums of square roots are rationalised, ``1/(1 + sqrt(2)) = sqrt(2) - 1``.  Of any other sum the integer multiple
+    without common factor is the generator, with the sign that SymPy leaves in place.
     """
     if is_zero(terms):
         raise BadInputError("the reciprocal of 0 does not exist.  Check for a frequency that cancels.")
@@ -152,9 +153,11 @@ def reciprocal(terms: Polynomial) -> Polynomial:
         return {inverse: factor / value}
     if all(_is_square_root(g, e) for monomial in terms for g, e in monomial):
         return _conjugate_reciprocal(terms)
-    lead = terms[max(terms)]
-    primitive = {m: c / lead for m, c in terms.items()}
-    return {m: c / lead for m, c in power(to_expression(primitive), -1, primitive).items()}
+    content = fmpq(gcd(*(int(c.p) for c in terms.values())), lcm(*(int(c.q) for c in terms.values())))
+    primitive = {m: c / content for m, c in terms.items()}
+    if to_expression(primitive).could_extract_minus_sign():
+        content, primitive = -content, {m: -c for m, c in primitive.items()}
+    return {m: c / content for m, c in power(to_expression(primitive), -1, primitive).items()}
 
 
 def _is_square_root(number: int, exponent: Exponent) -> bool:

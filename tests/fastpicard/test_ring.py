@@ -49,6 +49,21 @@ def test_reciprocals_of_sums_cancel_against_them(denominator):
     assert of(1 / denominator) != of(2 / denominator)
 
 
+@pytest.mark.parametrize("names", ["first_x first_y", "then_y then_x"])
+def test_reciprocals_come_back_as_they_went_whichever_symbol_was_met_first(names):
+    """1/(2 x + 3 y), 1/(x - 2 y) and 1/(x**2 - 1) themselves; of others the multiple that has no common factor."""
+    met = [Symbol(name) for name in names.split()]
+    for symbol in met:
+        of(symbol)
+    x, y = sorted(met, key=lambda symbol: str(symbol)[-1])
+
+    for e in (1 / (2 * x + 3 * y), 1 / (x - 2 * y), 1 / (x**2 - 1), sympy.pi / (x + y)):
+        assert of(e).as_expr() == e
+    assert of(1 / (2 * y - x)).as_expr() == -1 / (x - 2 * y)
+    assert of(1 / (x / 2 - y / 3)).as_expr() == 6 / (3 * x - 2 * y)
+    assert of(1 / (4 * x + 6 * y)).as_expr() == Rational(1, 2) / (2 * x + 3 * y)
+
+
 def test_the_reciprocal_of_nothing_does_not_exist():
     """1/0 is refused, also where the zero is hidden."""
     with pytest.raises(BadInputError):
