@@ -100,7 +100,7 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
                 f"rates up to "
                 f"{abs(state[3]).max():.3g} rad/s.  Rods without mass between others snap taut; give them a mass.")
         if progress is not None:
-            progress(float(clock[0]))
+            progress(float(times[-1] if outcome == DONE else clock[0]))
         if outcome == DONE:
             angle, turns = wrapped(out[:, 0], out[:, 1])
             return FloatRun(angle, turns, out[:, 2], steps, order, np.concatenate(kept) if keep else None)

@@ -24,11 +24,11 @@ from .crossings import Crossing, checked, find_crossings
 from .digits import DigitRun, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .equations import EquationsOfMotion
-from .errors import NotASceneError, QuantityError, SceneError
+from .errors import DriveError, NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
 from .pieces import BallPieces, FloatPieces
 from .quantities import quantity, refuse_text
-from .solvers import SCIPY_METHODS, integrate_heyoka, integrate_scipy
+from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .stepper import TURN
 from .swings import swing
 from .trajectory import Trajectory
@@ -104,7 +104,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
         if keep:
             raise SceneError(f"dense output and events come from Taylor series, and method is {method!r}: choose "
                              f"'taylor'.")
-        run, error = _by_others(chain, evaluated, theta, omega, times, accuracy, method)
+        run, error = _by_others(chain, evaluated, theta, omega, times, accuracy, method, report)
     motion = FloatPieces(run.record, n, run.order, times) if keep else None
     found = find_crossings(motion, events, times[-1]) if motion is not None else {}
     return Trajectory(times, run.theta, run.omega, run.turns.astype(np.int64), run.angle,
@@ -143,19 +143,42 @@ def _estimate(run: FloatRun, other: FloatRun) -> Any:
 # -- other methods, other digits ------------------------------------------------------------------------------
 
 
-def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times: Any, accuracy: float,
-               method: str) -> tuple[FloatRun, Any]:
-    """The error is that against Taylor steps two digits finer, and theirs added."""
-    start = [np.array([float(x) for x in part]) for part in (theta, omega)]
+def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times: Any, accuracy: float, method: str,
+               report: Callable[[float], None] | None) -> tuple[FloatRun, Any]:
+    """The error is that against Taylor steps two digits finer, and theirs added.
+
+    Where the support has no Taylor series, SciPy's solver runs again: with a 30th of the tolerance, or 30 times that
+    where it is as fine as SciPy goes, and with the constants of the rods moved.
+    """
+    first, rates = (np.array([float(x) for x in part]) for part in (theta, omega))
+    tolerance = max(FINEST_SCIPY, accuracy * 1e-2)
     if method == "linear":
-        angles, rates, steps = *swing(chain, start[0], start[1], times), 0
+        run = _run(swing(chain, first, rates, times))
     elif method == "heyoka":
-        angles, rates, steps = integrate_heyoka(chain, start[0], start[1], times, accuracy * 1e-3)
+        run = _run(integrate_heyoka(chain, first, rates, times, accuracy * 1e-3))
     else:
-        angles, rates, steps = integrate_scipy(system, start[0], start[1], times, method, accuracy * 1e-2)
-    run = FloatRun(*wrapped(angles, np.zeros_like(angles)), rates, steps, 0)
-    better, error = _to_accuracy(chain, theta, omega, times, max(accuracy * 1e-2, FLOAT_LIMIT), False, None)
+        run = _run(integrate_scipy(system, first, rates, times, method, tolerance, report))
+    try:
+        better, error = _to_accuracy(chain, theta, omega, times, max(accuracy * 1e-2, FLOAT_LIMIT), False, None)
+    except DriveError:
+        other = tolerance / 30 if tolerance >= 30 * FINEST_SCIPY else tolerance * 30
+        return run, _estimate(run, _run(integrate_scipy(_moved_chain(chain), first, rates, times, method, other)))
     return run, _estimate(run, better) + error
+
+
+def _run(found: tuple[Any, Any, int]) -> FloatRun:
+    """Angles, rates and steps as others give them."""
+    angles, rates, steps = found
+    return FloatRun(*wrapped(angles, np.zeros_like(angles)), rates, steps, 0)
+
+
+def _moved_chain(chain: CompiledChain) -> CompiledChain:
+    """The chain with its constants moved as :func:`_moved` does."""
+    m, l, I, _, _, _, mH, _ = _moved(chain.rods).T
+    center = mH / m
+    gyration = np.maximum(np.sqrt(I / m), abs(center))
+    return CompiledChain(m, l, center, gyration, chain.gravity, chain.support, chain.damping, chain.springs,
+                         chain.upright)
 
 
 def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact_times: Any, accuracy: float,
@@ -257,12 +280,16 @@ def _reporter(progress: Any, times: Any) -> Callable[[float], None] | None:
         return progress  # type: ignore[no-any-return]
     if not progress:
         return None
-    started = time.monotonic()
+    started = written = time.monotonic()
 
     def line(now: float) -> None:
+        nonlocal written
         part = (now - times[0]) / (times[-1] - times[0]) if times[-1] != times[0] else 1.0
+        if part < 1 and time.monotonic() < written + 0.1:
+            return
+        written = time.monotonic()
         sys.stderr.write(f"\rt = {now:.4g} of {times[-1]:.4g} ({100 * min(1.0, part):.0f} %), "
-                         f"{time.monotonic() - started:.0f} s")
+                         f"{written - started:.0f} s")
         sys.stderr.write("\n" if part >= 1 else "")
     return line
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
@@ -12,35 +13,49 @@ from .chain import CompiledChain
 from .errors import QuantityError, SceneError
 from .recursion import accelerate_rods
 
-__all__ = ["SCIPY_METHODS", "integrate_heyoka", "integrate_scipy"]
+__all__ = ["FINEST", "SCIPY_METHODS", "integrate_heyoka", "integrate_scipy"]
 
 SCIPY_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 FINEST = 3e-14  # below it SciPy warns that nothing is gained
 
 
-def integrate_scipy(system: Any, theta: Any, omega: Any, times: Any, method: str,
-                    tolerance: float) -> tuple[Any, Any, int]:
+def integrate_scipy(system: Any, theta: Any, omega: Any, times: Any, method: str, tolerance: float,
+                    progress: Callable[[float], None] | None = None) -> tuple[Any, Any, int]:
     """Angles and rates, shape (times, n) each, and the number of evaluations, by ``scipy.integrate.solve_ivp``.
 
-    ``system`` is anything with ``acceleration(t, theta, omega)``.  Raises QuantityError where the solver gives up.
+    ``system`` is anything with ``acceleration(t, theta, omega)``; ``progress`` is told how far evaluations have come.
+    Raises QuantityError where the solver gives up.
     """
     if find_spec("scipy") is None:
         raise SceneError(f"method={method!r} is SciPy's, and SciPy is not installed: pip install scipy, or "
                          f"method='taylor'.")
-    n = len(theta)
+    n, reached = len(theta), times[0]
 
     def rate(t: float, y: Any) -> Any:
+        nonlocal reached
+        if progress is not None and abs(t - times[0]) > abs(reached - times[0]):
+            reached = t
+            progress(float(t))
         return np.concatenate([y[n:], system.acceleration(t, y[:n], y[n:])])
 
     start = np.concatenate([theta, omega])
-    if len(times) == 1:
-        return start[None, :n], start[None, n:], 0
+    asked, where = _distinct(times)
+    if len(asked) == 1:
+        return np.tile(theta, (len(times), 1)), np.tile(omega, (len(times), 1)), 0
     tolerance = max(FINEST, tolerance)
     solve = import_module("scipy.integrate").solve_ivp
-    result = solve(rate, (times[0], times[-1]), start, method, times, rtol=tolerance, atol=tolerance)
+    result = solve(rate, (asked[0], asked[-1]), start, method, asked, rtol=tolerance, atol=tolerance)
     if not result.success:
         raise QuantityError(f"{method} stopped: {result.message}  Ask for less accuracy, or method='taylor'.")
-    return result.y[:n].T, result.y[n:].T, int(result.nfev)
+    if progress is not None and reached != asked[-1]:
+        progress(float(asked[-1]))
+    return result.y[:n, where].T, result.y[n:, where].T, int(result.nfev)
+
+
+def _distinct(times: Any) -> tuple[Any, Any]:
+    """Monotone times, each once, and where each of those given is among them; shapes (k,), (m,)."""
+    new = np.append(True, np.diff(times) != 0)
+    return np.asarray(times)[new], np.cumsum(new) - 1
 
 
 def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
@@ -72,8 +87,9 @@ def integrate_heyoka(chain: CompiledChain, theta: Any, omega: Any, times: Any,
     n, start = len(theta), [*theta, *omega]
     system = heyoka_system(chain, heyoka)
     integrator = heyoka.taylor_adaptive(system, start, time=float(times[0]), tol=max(1e-16, tolerance))
-    outcome = integrator.propagate_grid(np.asarray(times, dtype=float))
-    states = outcome[-1]
+    asked, where = _distinct(times)
+    outcome = integrator.propagate_grid(np.asarray(asked, dtype=float))
+    states = outcome[-1][where]
     if not np.isfinite(states).all():
         raise QuantityError(f"heyoka stopped with the outcome {outcome[0]}.")
     return states[:, :n], states[:, n:], int(outcome[3])

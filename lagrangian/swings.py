@@ -22,8 +22,8 @@ from .errors import NotAnEquilibriumError
 __all__ = ["swing"]
 
 
-def swing(chain: CompiledChain, theta: Any, omega: Any, times: Any) -> tuple[Any, Any]:
-    """Angles and rates of the linear model at ``times``, shape (times, n) each.
+def swing(chain: CompiledChain, theta: Any, omega: Any, times: Any) -> tuple[Any, Any, int]:
+    """Angles and rates of the linear model at ``times``, shape (times, n) each, and the number of steps, 0.
 
     Raises NotAnEquilibriumError where the chain does not hang still: a support that accelerates sideways or in waves,
     no weight, springs whose rest is upright; and where dampers would make the modes decay.
@@ -49,7 +49,7 @@ def swing(chain: CompiledChain, theta: Any, omega: Any, times: Any) -> tuple[Any
     phase = np.outer(np.asarray(times) - times[0], frequency)
     sine = np.sin(phase)
     angles = (a * np.cos(phase) + b / frequency * sine) @ shapes.T
-    return angles + rest, (b * np.cos(phase) - a * frequency * sine) @ shapes.T
+    return angles + rest, (b * np.cos(phase) - a * frequency * sine) @ shapes.T, 0
 
 
 def _matrices(chain: CompiledChain, pull: float) -> tuple[Any, Any]:

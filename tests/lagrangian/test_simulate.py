@@ -4,6 +4,7 @@ import json
 import math
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import mpmath
@@ -349,6 +350,48 @@ def test_a_support_that_follows_any_smooth_function_of_time():
         simulate(rough, [0.3], [0.1], [0, 2])
     fine = simulate(smooth, [0.3], [0.1], [0, 2], method="DOP853", accuracy=1e-8)
     assert abs(fine.theta - mine.theta).max() < 1e-7
+
+
+TABLE = np.linspace(0, 3, 20)
+
+
+@pytest.mark.parametrize("accuracy", [1e-5, 1e-8, 1e-12])
+@pytest.mark.parametrize("drive", [math.cos, lambda x: np.interp(x, TABLE, np.sin(TABLE)), lambda x: abs(x - 0.5),
+                                   lambda x: x % 1], ids=["math", "table", "kink", "jumps"])
+def test_a_support_without_a_taylor_series_moves_by_the_methods_of_scipy(drive, accuracy):
+    """And the error is that against the same solver with another tolerance: honest against a run cut where it jumps."""
+    chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], support_acceleration=lambda x: (0, drive(x)))
+    with pytest.raises(DriveError, match="DOP853"):
+        simulate(chain, [1, 2], [0, 0], [0, 1.2])
+    mine = simulate(chain, [1, 2], [0, 0], [0, 1.2], accuracy, "DOP853")
+    state = [np.array([1.0, 2.0]), np.zeros(2)]
+    for start, end in pairwise(sorted({0.0, 0.5, 1.0 - 1e-16, 1.2, *TABLE[TABLE < 1.2]})):
+        cut = simulate(chain, *state, [start, end], 1e-11, "DOP853")
+        state = [cut.theta[-1], cut.omega[-1]]
+
+    assert abs(mine.theta[-1] - state[0]).max() <= mine.error[-1] + 1e-11
+    assert mine.error[-1] < max(1e2 * accuracy, 1e-8)
+
+
+@pytest.mark.parametrize("times", [[0, 0, 1, 1], [0, 0, 0], [1, 0, 0, -1, -1]])
+def test_times_may_repeat_whatever_the_method(times):
+    """The states of equal times are equal."""
+    taylor, scipy = (simulate(CHAIN, [1, 2], [0, 0], times, method=method) for method in ("taylor", "DOP853"))
+
+    assert abs(taylor.theta - scipy.theta).max() < 1e-10
+    for motion in (taylor, scipy):
+        assert (np.diff(motion.theta, axis=0)[np.diff(times) == 0] == 0).all()
+
+
+@pytest.mark.parametrize("method", ["taylor", "RK45"])
+def test_progress_is_reported_to_the_end(method, capsys):
+    """The last time is reported, and the line on the screen is closed."""
+    seen = []
+    simulate(CHAIN, [1, 2], [0, 0], [0, 1], 1e-6, method, progress=seen.append)
+    simulate(CHAIN, [1, 2], [0, 0], [0, 1], 1e-6, method, progress=True)
+
+    assert seen[-1] == 1 and seen == sorted(seen)
+    assert capsys.readouterr().err.endswith("t = 1 of 1 (100 %), 0 s\n")
 
 
 def test_angles_of_a_million_lose_what_their_float_does_not_hold_and_no_more():
