@@ -20,7 +20,7 @@ import numpy as np
 
 from .machine import inlined
 
-__all__ = ["LARGEST", "difference", "product", "sines", "sines_of_large_joints"]
+__all__ = ["LARGEST", "TURN", "TURN_LOW", "difference", "product", "revolved", "sines", "sines_of_large_joints"]
 
 # pi/2 = HALF_1 + HALF_2 + HALF_3 + O(1e-36); the first two have 33 bits.
 HALF_1 = float.fromhex("0x1.921fb54400000p+0")
@@ -29,6 +29,8 @@ HALF_3 = float.fromhex("0x1.3198a2e037073p-69")
 PER_HALF = float.fromhex("0x1.45f306dc9c883p-1")  # 2/pi
 ROUND = 1.5 * 2.0**52  # adding and taking it away rounds to the nearest integer
 LARGEST = 1.6e6  # beyond it, n no longer fits
+TURN = float.fromhex("0x1.921fb54442d18p+2")
+TURN_LOW = float.fromhex("0x1.1a62633145c07p-52")
 
 S3, S5, S7, S9, S11, S13, S15, S17 = ((-1) ** (k // 2) / factorial(k) for k in range(3, 18, 2))
 C4, C6, C8, C10, C12, C14, C16 = ((-1) ** (k // 2) / factorial(k) for k in range(4, 17, 2))
@@ -73,6 +75,16 @@ def sines(d: Any, e: Any) -> tuple[Any, Any]:
     c = odd if swap else even
     turned = quarter == 2.0 or quarter == -2.0
     return (-s if turned or quarter == -1.0 else s), (-c if turned or quarter == 1.0 else c)
+
+
+@inlined
+def revolved(turns: Any, turns_low: Any, t: Any, t_low: Any) -> tuple[Any, Any]:
+    """Sine and cosine of ``2 pi (turns + turns_low) (t + t_low)``; whole turns are left out before anything rounds."""
+    whole, rest = product(turns, t)
+    part, rest = difference(whole - np.rint(whole), -(rest + (turns * t_low + turns_low * t)))
+    part = part - np.rint(part)
+    angle, low = product(TURN, part)
+    return sines(angle, low + (TURN * rest + TURN_LOW * part))
 
 
 def sines_of_large_joints(theta: Any, s: Any, c: Any) -> None:

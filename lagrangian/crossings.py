@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 from sympy import Integer, pi
 
+from .angles import TURN
 from .chain import CompiledChain
 from .errors import NotASceneError, QuantityError, SceneError
 from .pieces import Pieces
 from .precision import working
 from .quantities import quantity
-from .stepper import TURN
 
 __all__ = ["Crossing", "checked", "find_crossings", "flips"]
 

@@ -211,7 +211,8 @@ class Scene(Arrangement):
         damping, springs = (None if constants is None else [replace(x) for x in constants]
                             for constants in (self.damping, self.springs))
         xi, eta = self.support_acceleration
-        shaking = shaking_of_expressions(replace(xi), replace(eta), self.t)
+        motion = replace(self.support.xi), replace(self.support.eta)
+        shaking = shaking_of_expressions(replace(xi), replace(eta), self.t, motion)
         return CompiledChain(mass, length, center, gyration, replace(self.gravity), shaking, damping, springs,
                              self.upright, model)
 

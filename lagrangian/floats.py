@@ -11,15 +11,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from sympy import N, Rational, pi
+from sympy import Rational, floor, pi
 
+from .angles import TURN, TURN_LOW, product
 from .chain import CompiledChain
 from .errors import QuantityError
 from .machine import machine
-from .stepper import DONE, STUCK, TURN, TURN_LOW, advance, room
+from .quantities import quantity
+from .shaking import high_low
+from .stepper import DONE, STUCK, advance, room, total
 
 __all__ = ["FloatRun", "integrate_floats", "split", "wrapped"]
 
+LARGEST = 1e15  # rad: larger angles turn more often than floats count
 ORDER = 20  # and beyond it float64 gains nothing
 FINEST = 3e-17  # truncation a step that is lost in rounding
 
@@ -44,21 +48,17 @@ class FloatRun:
 def split(values: Any, angles: bool) -> Any:
     """Exact numbers, or floats, as rows high, low, turns; shape (3, n); turns are 0 unless they are angles."""
     if isinstance(values, np.ndarray) and values.dtype != object:
-        turns = np.rint(values / TURN) if angles else np.zeros_like(values)
-        high = turns * TURN
-        # the low half of turns * TURN, by Dekker's product
-        split_turn = 134217729.0 * TURN - (134217729.0 * TURN - TURN)
-        a = 134217729.0 * turns
-        a = a - (a - turns)
-        b, rest = turns - a, TURN - split_turn
-        low = ((a * split_turn - high) + a * rest + b * split_turn) + b * rest
-        return np.stack([values - high, -low - turns * TURN_LOW, turns])
+        if not angles:
+            return np.stack([values, 0 * values, 0 * values])
+        if (abs(values) < LARGEST).all():
+            turns = np.rint(values / TURN)
+            whole, rest = product(turns, TURN)
+            return np.stack([*total(values - whole, -rest - turns * TURN_LOW), turns])
     out = np.zeros((3, len(values)))
     for k, x in enumerate(values):
-        whole = round(float(N(x / (2 * pi), 20))) if angles else 0
-        rest = x - 2 * pi * whole
-        nearest = float(N(rest, 40))
-        out[:, k] = nearest, float(N(rest - Rational(nearest), 40)), whole
+        exact = quantity(x, "a state")
+        whole = int(floor(exact / (2 * pi) + Rational(1, 2))) if angles else 0
+        out[:, k] = *high_low(exact - 2 * pi * whole), whole
     return out
 
 
@@ -70,14 +70,15 @@ def wrapped(angle: Any, turns: Any) -> tuple[Any, Any]:
 
 def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, order: int, tolerance: float,
                      rods: Any = None, keep: bool = False, progress: Callable[[float], None] | None = None) -> FloatRun:
-    """The motion at ``times``, float64, monotone, from the state at the first of them.
+    """The motion at ``times``, monotone, from the state at the first of them.
 
-    ``theta`` and ``omega`` as :func:`split` takes them; ``rods`` replaces the chain's constants; ``keep`` keeps every
-    step's series.  Raises DriveError where the support has no Taylor series, QuantityError where steps shrink to
-    nothing.
+    ``theta``, ``omega`` and ``times`` as :func:`split` takes them; ``rods`` replaces the chain's constants; ``keep``
+    keeps every step's series.  Raises DriveError where the support has no Taylor series, QuantityError where steps
+    shrink to nothing.
     """
     n = len(chain)
-    state, clock = np.zeros((5, n)), np.array([times[0], 0.0])
+    marks = np.ascontiguousarray(split(times, False)[:2].T)
+    state, clock = np.zeros((5, n)), marks[0].copy()
     state[:3], state[3:] = split(theta, True), split(omega, False)[:2]
     out, kept = np.empty((len(times), 3, n)), []
     record: Any = None
@@ -85,12 +86,12 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     most = min(most, 4096) if keep else most
     found, steps, space = 0, 0, room(n, order)
     while True:
-        pull, waves = _shaking(chain, clock, order)
+        pull, waves = _shaking(chain, clock, order, rods is not None)
         if keep:
             record = np.empty((most, 2 + n * (order + 4)))
         outcome, made, found = machine(advance)(
             chain.rods if rods is None else rods, chain.damping, chain.springs, pull, waves, tolerance, state,
-            clock, times, found, out, most, record, space)
+            clock, marks, found, out, most, record, space)
         steps += made
         if keep:
             kept.append(record[:made])
@@ -100,21 +101,23 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
                 f"rates up to "
                 f"{abs(state[3]).max():.3g} rad/s.  Rods without mass between others snap taut; give them a mass.")
         if progress is not None:
-            progress(float(times[-1] if outcome == DONE else clock[0]))
+            progress(float(marks[-1, 0] if outcome == DONE else clock[0]))
         if outcome == DONE:
             angle, turns = wrapped(out[:, 0], out[:, 1])
             return FloatRun(angle, turns, out[:, 2], steps, order, np.concatenate(kept) if keep else None)
 
 
-def _shaking(chain: CompiledChain, clock: Any, order: int) -> tuple[Any, Any]:
+def _shaking(chain: CompiledChain, clock: Any, order: int, moved: bool) -> tuple[Any, Any]:
     """The series about now of the acceleration of the first joint, shape (2, order), and its waves or None.
 
-    Where there are waves its steady part is one of them, of frequency 0, and the series is left to them.
+    Where there are waves its steady part is one of them, of frequency 0, and the series is left to them.  A function
+    of time is given a float, whose rounding it may amplify; ``moved``: by one unit in its last place.
     """
     g, up = float(chain.gravity.evalf(30)), chain.up
     pull = np.zeros((2, order))
     if chain.support.function is not None:
-        pull[:] = np.array(chain.support.series(float(clock[0] + clock[1]), order, None), dtype=float)[:, :order]
+        now = float(clock[0] + clock[1]) * (1.0 + moved * np.finfo(float).eps)
+        pull[:] = np.array(chain.support.series(now, order, None), dtype=float)[:, :order]
         pull[1, 0] += g
         pull[1] *= up
         return pull, None
@@ -122,5 +125,5 @@ def _shaking(chain: CompiledChain, clock: Any, order: int) -> tuple[Any, Any]:
     pull[:, 0] = ax, up * (ay + g)
     if not len(waves):
         return pull, None
-    waves = waves * np.array([1.0, 1.0, 1.0, up, up])
-    return pull, np.concatenate([[[0.0, pull[0, 0], 0.0, pull[1, 0], 0.0]], waves])
+    waves = waves * np.array([1.0, 1.0, 1.0, 1.0, 1.0, up, up])
+    return pull, np.concatenate([[[0.0, 0.0, 0.0, pull[0, 0], 0.0, pull[1, 0], 0.0]], waves])

@@ -19,13 +19,14 @@ from typing import Any
 import numpy as np
 from sympy import pi
 
+from .angles import TURN, TURN_LOW
 from .arithmetic import Balls
 from .digits import Piece, bits_for, middle, numbers
 from .errors import QuantityError
 from .floats import split
 from .precision import working
 from .quantities import quantity, refuse_text
-from .stepper import TURN, TURN_LOW, total
+from .stepper import total
 
 __all__ = ["BallPieces", "FloatPieces", "Pieces"]
 

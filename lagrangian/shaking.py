@@ -4,27 +4,33 @@ Constants and waves, ``c cos(q t) + s sin(q t)``, have their Taylor coefficients
 
     [cos(q (t + h))]_j = q**j/j! cos(q t + j pi/2),
 
-one sine and one cosine a step, computed where the steps are.  Any other function of t is called with a
-:class:`~lagrangian.jets.Jet` in place of t; so it may use ``+ - * / **`` and numpy's sin, cos, exp, log, sqrt.
-A function that cannot be called so (one that uses :mod:`math`, a table, branches) has no Taylor series here.
+one sine and one cosine a step, computed where the steps are; whole turns are taken from ``q t`` before it rounds.  Any
+other function of t is called with a :class:`~lagrangian.jets.Jet` in place of t; so it may use ``+ - * / **`` and
+numpy's sin, cos, tan, exp, log, sqrt, sinh, cosh, tanh.  A function that cannot be called so (one that uses
+:mod:`math`, a table, branches) has no Taylor series here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from math import isfinite
+from numbers import Complex, Real
 from typing import Any
 
+import flint
 import numpy as np
-from sympy import Add, Expr, Integer, Mul, cos, expand, sin
+from sympy import Add, Expr, Integer, Mul, Rational, cos, expand, pi, sin
 from sympy.core.function import AppliedUndef
 
+from .angles import revolved
 from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
 from .quantities import real_number, refuse_text
 
-__all__ = ["Shaking", "shaking_of"]
+__all__ = ["Shaking", "high_low", "shaking_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,11 +42,15 @@ class Shaking:
     constant : pair of exact numbers; m/s**2
     waves : tuple of ``(q, cx, sx, cy, sy)``, exact: ``xi'' += cx cos qt + sx sin qt`` and so eta''; rad/s, m/s**2
     function : None, or ``function(t, number)`` giving the whole pair
+    motion : None, or the same for ``(xi, eta)``, which are to be real where their accelerations are; m
+    name : of the pair, in messages
     """
 
     constant: tuple[Any, Any] = (Integer(0), Integer(0))
     waves: tuple[tuple[Any, ...], ...] = ()
     function: Callable[..., Any] | None = None
+    motion: Callable[..., Any] | None = None
+    name: str = "support_acceleration"
 
     @property
     def at_rest(self) -> bool:
@@ -52,27 +62,31 @@ class Shaking:
         """Whether the acceleration is constant."""
         return not self.waves and self.function is None
 
-    @property
+    @cached_property
     def floats(self) -> tuple[Any, Any]:
-        """``constant`` of shape (2,) and ``waves`` of shape (w, 5) as float64."""
-        return (np.array([_float(x) for x in self.constant]),
-                np.array([[_float(x) for x in wave] for wave in self.waves]).reshape(-1, 5))
+        """``constant``, shape (2,), and ``waves``, shape (w, 7), as float64.
+
+        The rows of waves are ``q``, turns in a second, ``q/(2 pi)``, as high and low half, ``cx, sx, cy, sy``: the
+        phase is right at all times, 1e9 s too, where rounding q would take 1e-7 q of it.
+        """
+        rows = [[_float(q), *high_low(q / (2 * pi)), *map(_float, sizes)] for q, *sizes in self.waves]
+        return np.array([_float(x) for x in self.constant]), np.array(rows).reshape(-1, 7)
 
     def at(self, t: Any, arithmetic: Arithmetic | None = None) -> tuple[Any, Any]:
-        """The pair at a time, as floats or in ``arithmetic``."""
+        """The pair at a time, as floats or in ``arithmetic``.  Raises DriveError where it has no finite real value."""
         number = arithmetic.number if arithmetic else _float
         if self.function is not None:
-            given_pair = self.function(t, number)
-            try:
-                ax, ay = given_pair
-            except (TypeError, ValueError):
-                raise DriveError(f"support_acceleration is a function of t that gives the pair (xi'', eta''), and at "
-                                 f"t = {t} it gives {given_pair!r}.") from None
+            return self._value(t, number)
+        if arithmetic is None:
+            (ax, ay), waves = self.floats
+            for _, turns, low, cx, sx, cy, sy in waves.tolist():
+                s, c = revolved(turns, low, float(t), 0.0)
+                ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)
             return ax, ay
         ax, ay = (number(x) for x in self.constant)
         for wave in self.waves:
             q, cx, sx, cy, sy = (number(x) for x in wave)
-            s, c = arithmetic.sines(q * t) if arithmetic else (np.sin(q * t), np.cos(q * t))
+            s, c = arithmetic.sines(q * t)
             ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)
         return ax, ay
 
@@ -84,13 +98,44 @@ class Shaking:
         zero, one = number(Integer(0)), number(Integer(1))
         time = Jet([t, one, *[zero] * (order - 1)][: order + 1], FUNCTIONS)
         try:
-            parts = [part if isinstance(part, Jet) else time * zero + part for part in self.function(time, number)]
+            self._value(t, number)
+            found = [part if isinstance(part, Jet) else time * zero + part for part in self._pair(time, number)]
         except (TypeError, AttributeError, ValueError) as refusal:
+            if isinstance(refusal, DriveError):
+                raise
             raise DriveError(
-                f"the Taylor stepper calls support_acceleration with a power series in place of t, and it answers "
-                f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's sin, cos, exp, log, sqrt, "
+                f"the Taylor stepper calls {self.name} with a power series in place of t, and it answers "
+                f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's {', '.join(FUNCTIONS)}, "
                 f"or choose another method, such as method='DOP853'.") from refusal
-        return parts[0].coefficients, parts[1].coefficients
+        except ArithmeticError:
+            found = []
+        if not found or not all(_is_real(x) for part in found for x in part.coefficients):
+            raise DriveError(f"{self.name} has no Taylor series about t = {_shown(t)}: not all its derivatives are "
+                             f"finite there.  Start elsewhere, or choose another method, such as method='DOP853'.")
+        return found[0].coefficients, found[1].coefficients
+
+    def _pair(self, t: Any, number: Any) -> tuple[Any, Any]:
+        with np.errstate(all="ignore"):
+            given = self.function(t, number)  # type: ignore[misc]
+        try:
+            ax, ay = given
+        except (TypeError, ValueError):
+            raise DriveError(f"support_acceleration is a function of t that gives the pair (xi'', eta''), and at "
+                             f"t = {_shown(t)} it gives {given!r}.") from None
+        return ax, ay
+
+    def _value(self, t: Any, number: Any) -> tuple[Any, Any]:
+        try:
+            found = self._pair(t, number)
+            with np.errstate(all="ignore"):
+                motion = self.motion(t, number) if self.motion else ()
+            wrong = [x for x in (*found, *motion) if not _is_real(x)]
+        except ArithmeticError as failure:
+            wrong = [failure]
+        if wrong:
+            raise DriveError(f"{self.name} has no finite real value at t = {_shown(t)}, but {wrong[0]}: keep within "
+                             f"the times at which the support's motion is defined and smooth.")
+        return found
 
     def _waves(self, t: Any, order: int, number: Any, sines: Any) -> tuple[list[Any], list[Any]]:
         x, y = ([number(part)] + [number(Integer(0))] * order for part in self.constant)
@@ -110,6 +155,23 @@ def _float(exact: Any) -> float:
     return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30))
 
 
+def high_low(exact: Any) -> tuple[float, float]:
+    """An exact number as the nearest float and what that leaves."""
+    high = _float(exact)
+    return high, float((exact - Rational(high)).evalf(20, maxn=1200))
+
+
+def _is_real(x: Any) -> bool:
+    """Whether a number of any type is real and finite."""
+    if isinstance(x, flint.arb):
+        return bool(x.is_finite())
+    return not (isinstance(x, Complex) and not isinstance(x, Real)) and isfinite(x)
+
+
+def _shown(t: Any) -> str:
+    return f"{float(t.coefficients[0] if isinstance(t, Jet) else t):.6g}"
+
+
 def shaking_of(given: Any) -> Shaking:
     """A pair of numbers, or a function of t that gives one.  Raises TextError, DriveError."""
     refuse_text(given, "support_acceleration")
@@ -125,8 +187,12 @@ def shaking_of(given: Any) -> Shaking:
     return Shaking((real_number(ax, "support_acceleration[0]"), real_number(ay, "support_acceleration[1]")))
 
 
-def shaking_of_expressions(xi: Any, eta: Any, t: Any) -> Shaking:
-    """Two SymPy accelerations in the Symbol t, all other Symbols replaced already; raises QuantityError, DriveError."""
+def shaking_of_expressions(xi: Any, eta: Any, t: Any, motion: tuple[Any, ...] = ()) -> Shaking:
+    """Two SymPy accelerations in the Symbol t, all other Symbols replaced already; raises QuantityError, DriveError.
+
+    ``motion`` are the two coordinates that have these accelerations, ``t log(1 - t)`` say, which ends where ``eta''``
+    does not.
+    """
     for expression in (xi, eta):
         left = sorted(map(str, expression.free_symbols - {t}))
         if left:
@@ -146,7 +212,12 @@ def shaking_of_expressions(xi: Any, eta: Any, t: Any) -> Shaking:
                 _add_term(term, t, part, constant, waves)
         return Shaking((constant[0], constant[1]), tuple((q, *w) for q, w in waves.items()))
     except _NotAWave:
-        return Shaking(function=lambda time, number: (evaluate(xi, t, time, number), evaluate(eta, t, time, number)))
+        return Shaking(function=_evaluated((xi, eta), t), motion=_evaluated(motion, t),
+                       name=f"the support's acceleration ({xi}, {eta})")
+
+
+def _evaluated(expressions: tuple[Any, ...], t: Any) -> Callable[..., Any]:
+    return lambda time, number: tuple(evaluate(expression, t, time, number) for expression in expressions)
 
 
 class _NotAWave(Exception):

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from .angles import TURN
 from .chain import CompiledChain
 from .compiled import CompiledEquations, compile_equations
 from .crossings import Crossing, checked, find_crossings
@@ -29,7 +30,6 @@ from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
 from .pieces import BallPieces, FloatPieces
 from .quantities import quantity, refuse_text
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
-from .stepper import TURN
 from .swings import swing
 from .trajectory import Trajectory
 
@@ -99,7 +99,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
                              f"'taylor'.")
         return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, dense, events, report)
     if method == "taylor":
-        run, error = _to_accuracy(chain, theta, omega, times, accuracy, keep, report)
+        run, error = _to_accuracy(chain, theta, omega, exact_times, accuracy, keep, report)
     else:
         if keep:
             raise SceneError(f"dense output and events come from Taylor series, and method is {method!r}: choose "
@@ -107,7 +107,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
         run, error = _by_others(chain, evaluated, theta, omega, times, accuracy, method, report)
     motion = FloatPieces(run.record, n, run.order, times) if keep else None
     found = find_crossings(motion, events, times[-1]) if motion is not None else {}
-    return Trajectory(times, run.theta, run.omega, run.turns.astype(np.int64), run.angle,
+    return Trajectory(times, run.theta, run.omega, _whole(run.turns), run.angle,
                       chain.energy(run.angle.T if chain.springs is None else run.theta.T, run.omega.T), error, accuracy,
                       method, run.steps, run.order, chain, found, motion if dense else None)
 
@@ -126,6 +126,11 @@ def _to_accuracy(chain: CompiledChain, theta: Any, omega: Any, times: Any, accur
         if error[-1] <= accuracy or tolerance <= FINEST:
             return run, error
         tolerance = max(FINEST, tolerance * min(1e-2, 1e-2 * accuracy / error[-1]))
+
+
+def _whole(turns: Any) -> Any:
+    """Numbers of turns as int64, or Python's integers where they are too large for that."""
+    return turns.astype(np.int64) if (abs(turns) < 2.0**63).all() else np.frompyfunc(int, 1, 1)(turns)
 
 
 def _moved(rods: Any) -> Any:

@@ -69,7 +69,7 @@ def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
         raise SceneError("heyoka gets the support's motion as waves c cos(qt) + s sin(qt): choose method='taylor'.")
     constant, waves = chain.support.floats
     ax, ay = heyoka.expression(constant[0]), heyoka.expression(constant[1] + float(chain.gravity))
-    for q, cx, sx, cy, sy in waves:
+    for q, _, _, cx, sx, cy, sy in waves:
         cosine, sine = heyoka.cos(q * heyoka.time), heyoka.sin(q * heyoka.time)
         ax, ay = ax + cx * cosine + sx * sine, ay + cy * cosine + sy * sine
     out, work = np.empty(n, dtype=object), np.empty((n, 4), dtype=object)

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from .angles import difference, product, sines
+from .angles import TURN, TURN_LOW, difference, revolved, sines
 from .machine import inlined
 from .taylor import FACTORS, expand, factor, series_shape
 
@@ -23,9 +23,7 @@ __all__ = ["DONE", "MORE", "STUCK", "advance", "room"]
 
 MORE, DONE, STUCK = 0, 1, 2
 PI = float.fromhex("0x1.921fb54442d18p+1")
-TURN = float.fromhex("0x1.921fb54442d18p+2")
 FARTHEST = 1.5  # rad, for a rod in a step: the series of its sine and cosine lose exp(1.5) in rounding
-TURN_LOW = float.fromhex("0x1.1a62633145c07p-52")
 
 
 @inlined
@@ -58,11 +56,10 @@ def shake(waves: Any, clock: Any, pull: Any) -> None:
         pull[1, j] = 0.0
     for i in range(waves.shape[0]):
         q = waves[i, 0]
-        angle, low = product(q, clock[0])
-        s, c = sines(angle, low + q * clock[1])
+        s, c = revolved(waves[i, 1], waves[i, 2], clock[0], clock[1])
         for j in range(order):
-            pull[0, j] += waves[i, 1] * c + waves[i, 2] * s
-            pull[1, j] += waves[i, 3] * c + waves[i, 4] * s
+            pull[0, j] += waves[i, 3] * c + waves[i, 4] * s
+            pull[1, j] += waves[i, 5] * c + waves[i, 6] * s
             s, c = c * q / (j + 1), -s * q / (j + 1)
 
 
@@ -117,15 +114,15 @@ def advance(rods: Any, damping: Any, springs: Any, pull: Any, waves: Any, tolera
     """Step until ``most`` steps are made or all times are reached.  Returns the outcome, steps and times found.
 
     Shapes: rods (n, 8); damping, springs (n,) or None; pull (2, order), Taylor coefficients of the acceleration of
-    the first joint, written at every step where there are waves, (w, 5) or None; state (5, n): angle high, low, turns,
-    rate high, low; clock (2,), the time high, low; times (m,), of which ``found`` are done; out (m, 3, n): angle,
-    turns, rate; record (most, 2 + n (order + 4)) or None: start and length of each step, state and rates' series of
-    each rod; space as :func:`room` gives it.
+    the first joint, written at every step where there are waves, (w, 7) or None; state (5, n): angle high, low, turns,
+    rate high, low; clock (2,), the time high, low; times (m, 2) likewise, of which ``found`` are done; out (m, 3, n):
+    angle, turns, rate; record (most, 2 + n (order + 4)) or None: start and length of each step, state and rates'
+    series of each rod; space as :func:`room` gives it.
     """
     n, order = rods.shape[0], pull.shape[1]
     joint, factors, held, series = space
     s, c, delta = joint[0], joint[1], joint[2]
-    end = times[times.shape[0] - 1]
+    end, end_low = times[times.shape[0] - 1]
     for step in range(most):
         joints(state, s, c, delta)
         factor(rods, s, c, 1.0, factors)
@@ -133,7 +130,7 @@ def advance(rods: Any, damping: Any, springs: Any, pull: Any, waves: Any, tolera
             shake(waves, clock, pull)
         series[:] = 0.0
         expand(factors, damping, springs, delta, state[3], pull[0], pull[1], order, 1.0, held, series)
-        remaining = (end - clock[0]) - clock[1]
+        remaining = (end - clock[0]) + (end_low - clock[1])
         h = reach(series, order, tolerance)
         longest = 2.0 * abs(remaining) + 1e-14 * abs(clock[0]) + 1e-300
         for k in range(n):
@@ -153,7 +150,7 @@ def advance(rods: Any, damping: Any, springs: Any, pull: Any, waves: Any, tolera
                 for j in range(order + 1):
                     row[at + 3 + j] = series[k, 2, order - j]
         while found < times.shape[0]:
-            ahead = (times[found] - clock[0]) - clock[1]
+            ahead = (times[found, 0] - clock[0]) + (times[found, 1] - clock[1])
             if abs(ahead) > abs(h):
                 break
             for k in range(n):

@@ -6,9 +6,9 @@ import flint
 import mpmath
 import numpy as np
 import pytest
-from sympy import Rational, pi
+from sympy import Rational, Symbol, cos, pi, sin, sqrt
 
-from lagrangian import CompiledChain, QuantityError, SceneError, chain as chains, redone, simulate
+from lagrangian import CompiledChain, QuantityError, Rod, Scene, SceneError, Support, chain as chains, redone, simulate
 from lagrangian.floats import split
 from lagrangian.stepper import move
 
@@ -335,6 +335,43 @@ def test_wrapping_an_angle_loses_nothing():
                 high_, low_, turns_ = state[:3, 0]
                 assert abs(high_) <= np.pi
                 assert abs(mpmath.mpf(high_) + low_ + 2 * mpmath.pi * turns_ - start - side) < 1e-25
+
+
+@pytest.mark.parametrize("start", [1e13, -1e15, 1e22])
+def test_an_angle_of_any_size_is_the_same_in_an_array_and_in_a_list(start):
+    """The float is the exact number that it is: within the turn the motion has the digits of one that starts there."""
+    chain = CompiledChain([1], [1], [1], [1], upright=False)
+    array, listed = (simulate(chain, values, [0], [0, 1]) for values in (np.array([start]), [start]))
+    exact = simulate(chain, [start], [0], [0, 1], digits=40)
+
+    for motion in (array, listed):
+        assert abs(motion.wrapped[-1, 0] - float(exact.wrapped[-1, 0])) < motion.error[-1] < 1e-12
+        assert abs(motion.turns[-1, 0] - exact.turns[-1, 0]) <= 1e-16 * abs(start)
+
+
+@pytest.mark.parametrize("q", [2 * pi, 1000 * sqrt(2), Rational("28.7")])
+@pytest.mark.parametrize("time", [0.1, 10.1, -1e6 + 0.3, 1e9])
+def test_accelerations_of_a_shaken_support_keep_their_digits_at_all_times(q, time):
+    """4e-15 of 60 digits: q t has whole turns left out before it is rounded."""
+    t = Symbol("t")
+    chain = Scene([Rod.uniform(1, 1)] * 2, Support(sin(q * t), cos(q * t) / 10), t=t, gravity=9.81).compile()
+    context = mpmath.mp.clone()
+    context.dps = 60
+    exact = chain.acceleration(context.mpf(time), [context.mpf(1), context.mpf(2)], [context.mpf(0)] * 2)
+
+    scale = max(abs(x) for x in exact)
+    assert max(abs(x - y) for x, y in zip(exact, chain.acceleration(time, [1.0, 2.0], [0, 0]))) < 4e-15 * scale
+
+
+@pytest.mark.parametrize("start", [0, 10**6 + Rational(1, 3), 10**9])
+def test_a_shaken_chain_is_followed_as_well_far_from_zero(start):
+    """The phase of the support is right at 1e9 s, and the exact initial time is kept: against 25 digits."""
+    t = Symbol("t")
+    drive = Support(cos(2 * pi * t) / 2, sin(sqrt(2) * 10 * t) / 10)
+    chain = Scene([Rod.uniform(1, 1)], drive, gravity=9.81, t=t, upright=False).compile()
+    motion, exact = (simulate(chain, [1], [0], [start, start + 2], digits=digits) for digits in (None, 25))
+
+    assert abs(motion.theta[-1, 0] - float(exact.theta[-1, 0])) <= motion.error[-1] < 1e-10
 
 
 def test_released_from_horizontal_no_step_is_too_long():
