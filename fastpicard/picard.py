@@ -22,7 +22,8 @@ from functools import cached_property
 from typing import Any
 
 import sympy
-from sympy import Expr, ImmutableMatrix, Matrix, Symbol
+from sympy import Basic, Expr, ImmutableMatrix, Matrix, Symbol
+from sympy.logic.boolalg import Boolean
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError
@@ -33,6 +34,7 @@ from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time,
 from fastpicard.ring import Polynomial
 from fastpicard.series import PoissonSeries
 from fastpicard.vectorise import vectorise
+from fastpicard.writing import dyadic
 
 # Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
 SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)
@@ -65,13 +67,14 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     Returns
     -------
     ImmutableMatrix, shape (m, 1)
-        exact.  Integrals come from SymPy's ``integrate``; one that SymPy cannot
+        exact; a float is the dyadic number it is.  Integrals come from SymPy's ``integrate``; one that SymPy cannot
         do stays an unevaluated ``Integral``, which is a correct answer (Out[3]).
 
     Raises
     ------
     BadInputError, BadTypeError
-        for an order that is no integer from 0 up, or ``x0``, ``t0`` that contain ``t`` or text.
+        for an order that is no integer from 0 up, ``x0``, ``t0`` that contain ``t`` or text, and where nan or an
+        infinity occurs.
 
     Examples
     --------
@@ -93,7 +96,8 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
         if slope.shape != x.shape:
             raise BadInputError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "
                                 "Return one component for each unknown.")
-        x = Matrix([start[i] + _integral(slope[i].subs(t, s), s, t0, t) for i in range(len(start))])
+        x = Matrix([_proper(start[i] + _integral(slope[i].subs(t, s), s, t0, t), f"the integral of component {i} of "
+                            f"f(t, x) from {t0} to {t}") for i in range(len(start))])
     return ImmutableMatrix(x)
 
 
@@ -107,15 +111,31 @@ def _integral(integrand: Expr, s: Symbol, lower: Expr, upper: Expr) -> Expr:
 
 def _slope(value: Any) -> Matrix:
     if isinstance(value, sympy.MatrixBase):
-        return Matrix(value)
+        value = value.tolist()
     if isinstance(value, str) or not isinstance(value, list | tuple):
         raise BadTypeError(f"f(t, x) must be a list or a column vector, but it is {value!r}.  Return its components.")
     rows = [row if isinstance(row, list | tuple) else [row] for row in value]
-    return Matrix([[as_expression(entry, "every component of f(t, x)") for entry in row] for row in rows])
+    what = "every component of f(t, x)"
+    return Matrix([[_proper(dyadic(as_expression(entry, what)), what) for entry in row] for row in rows])
+
+
+def _proper(expression: Expr, what: str) -> Expr:
+    if _is_infinite(expression):
+        raise BadInputError(f"{what} must be finite, but it is {expression}.  Start at a t0 and x0 where f(t, x) is "
+                            "regular.")
+    return expression
+
+
+def _is_infinite(e: Basic) -> bool:
+    """Whether nan or an infinity occurs, not counting conditions of pieces and limits of sums and integrals."""
+    if not e.args:
+        return e is sympy.nan or e.is_finite is False
+    return not isinstance(e, Boolean) and type(e) is not sympy.Tuple and (
+        isinstance(e, sympy.AccumBounds) or any(map(_is_infinite, e.args)))
 
 
 def _plain_constant(value: Any, t: Symbol, what: str) -> Expr:
-    expression = as_finite(value, what)
+    expression = dyadic(as_finite(value, what))
     check_same_time(expression, t)
     if t in expression.free_symbols:
         raise BadInputError(f"{what} must not depend on {t}, but it is {expression}.  Use another symbol.")

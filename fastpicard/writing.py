@@ -24,6 +24,7 @@ from fastpicard.ring import (
     add_term,
     expression_of,
     monomial_expression,
+    rational,
     to_expression,
     to_sympy_number,
 )
@@ -152,8 +153,14 @@ def angle_expression(angle: Angle, time: Expr) -> Expr:
     return linear_expression(angle[0]) * time + linear_expression(angle[1])
 
 
+def dyadic(e: Expr) -> Expr:
+    """The same with every finite ``Float`` as the dyadic rational it stands for: nothing after it rounds."""
+    return e.xreplace({x: to_sympy_number(rational(x)) for x in e.atoms(sympy.Float) if x.is_finite})
+
+
 def write_at(modes: Modes, time: Expr) -> Expr:
-    """The series with ``time`` put in place of ``t``, terms evaluated by SymPy one by one."""
+    """The series with ``time`` put in place of ``t``, terms evaluated by SymPy one by one; a float is dyadic."""
+    time = dyadic(time)
     terms = []
     for (kind, angle, monomial), f in modes.items():
         argument = angle_expression(angle, time)
@@ -164,8 +171,6 @@ def write_at(modes: Modes, time: Expr) -> Expr:
                 value = sympy.Rational(sign * int(c.p), int(c.q) * factorial(r))
                 terms.append(value * monomial_expression(monomial) * time**r * functions[sine])
     return Add(*terms)
-
-
 
 
 def gathered(modes: Modes, t: Symbol) -> Expr:

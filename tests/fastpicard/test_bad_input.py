@@ -481,10 +481,20 @@ def test_what_is_not_finite_is_refused(number):
         lambda: new_integrate(cos(t), (t, number, 0)),
         lambda: picard(lambda s, z: z, t, [number], 1),
         lambda: picard(lambda s, z: z, t, [1], 1, number),
+        lambda: picard(lambda s, z: [a * number], t, [1], 1),
+        lambda: picard(lambda s, z: Matrix([number]), t, [1], 1),
         lambda: PoissonSeries(cos(t), t)(number),
     ):
         with pytest.raises(BadInputError, match=r"finite|depend|converge"):
             ask()
+
+
+def test_an_integral_that_is_not_finite_is_refused():
+    """x' = 1/t from t = 0; and x' = x oo, where only x makes nan of it."""
+    with pytest.raises(BadInputError, match=r"from 0 to t must be finite, but it is log\(t\) \+ oo"):
+        picard(lambda s, z: [1 / s], t, [1], 1)
+    with pytest.raises(BadInputError, match="every component of f.* must be finite, but it is nan"):
+        picard(lambda s, z: [z[0] * oo], t, [0], 1)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
 import sympy
 from hypothesis import given, strategies as st
@@ -171,3 +172,14 @@ def test_the_same_integral_twice_is_the_same(q, r):
 
     assert new_integrate(exact, t) == new_integrate(exact, t)
     assert PoissonSeries(dyadic, t).integrate().diff() == PoissonSeries(t**r * cos(Rational(q * 0.1) * t), t)
+
+
+@pytest.mark.parametrize("half", [0.5, np.float64(0.5), np.float32(0.5), mpmath.mpf(0.5), sympy.Float(0.5)])
+def test_a_float_as_a_limit_or_a_time_is_the_dyadic_number_it_is(half):
+    """Exactly the result for 1/2; in floats t**20 cos(t) loses every digit."""
+    f = PoissonSeries(t**20 * cos(t), t)
+
+    assert new_integrate(t**20 * cos(t), (t, 0, half)) == f.integrate()(Rational(1, 2))
+    assert new_integrate(t**20 * cos(t), (t, -half, a)) == f.integrate()(a) - f.integrate()(Rational(-1, 2))
+    assert f.integrate()(half) == f.integrate()(Rational(1, 2))
+    assert f(a * half) == f(a / 2)

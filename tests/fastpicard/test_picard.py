@@ -26,6 +26,7 @@ from tests.strategies import (
     VALUES,
     a,
     b,
+    c,
     frequencies,
     matrices,
     phases,
@@ -320,6 +321,23 @@ def test_the_plain_definition_takes_any_right_hand_side():
     assert kept.has(sympy.Integral)
 
 
+def test_the_plain_definition_takes_floats_as_the_dyadic_numbers_they_are():
+    """In x0, t0 and f alike, so the iterate from 0.5 is that from 1/2."""
+    found = picard(lambda s, x: [0.1 * x[0] * s], t, [0.5], 1, 0.5)
+
+    assert found == picard(lambda s, x: Matrix([Rational(0.1) * x[0] * s]), t, [Rational(1, 2)], 1,
+                           Rational(1, 2))
+    assert not found.has(sympy.Float)
+
+
+def test_the_plain_definition_passes_conditions_and_sums_without_end():
+    """An infinity in the condition of a piece or as the limit of a sum makes nothing infinite."""
+    found = picard(lambda s, x: [x[0] * cos(a * s)], t, [1], 2)
+
+    assert found.has(sympy.oo) and found.subs({a: 2, t: pi}) == Matrix([1])
+    assert picard(lambda s, x: [sympy.Sum(b**c, (c, 0, sympy.oo))], t, [1], 1).has(sympy.Sum)
+
+
 # -- what one can do with it -----------------------------------------------------------------------
 
 
@@ -336,6 +354,14 @@ def test_numbers_are_those_of_the_exact_matrix(P, time):
         for j in range(2)
     )
     assert Phi.evaluate(time, VALUES).tolist() == [[float(found[i, j]) for j in range(2)] for i in range(2)]
+
+
+def test_the_exact_matrix_at_a_float_is_that_at_the_dyadic_number():
+    """Phi(0.5) = Phi(1/2), though 0.5 in floats would lose nine digits of it."""
+    Phi = FundamentalMatrix([[0, 1], [-1 - cos(t), 0]], t, 12)
+
+    assert Phi(0.5) == Phi(Rational(1, 2))
+    assert Phi(np.float64(0.5)) == Phi.series(sympy.Float(0.5)) == Phi(Rational(1, 2))
 
 
 def test_a_matrix_may_be_a_function_lists_or_any_matrix():
