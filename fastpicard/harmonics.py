@@ -16,12 +16,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Point, Values, ball, exact_number, exact_values, free_symbols
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS
+from fastpicard.precision import working
 
 Place = tuple[int, int]
 Wave = tuple[Any, Any, Any]  # q, the cosine's amplitude, the sine's: balls
@@ -157,7 +158,7 @@ def _number_or_interval(value: Any, what: str) -> Any:
         return exact_number(value, what)
     if len(value) != 2:
         raise BadInputError(f"an interval is a pair (lo, hi), but {what} is {value!r}.  Give two numbers.")
-    with ctx.workprec(256):
+    with working(256):
         lo, hi = (ball(exact_number(end, f"an end of {what}")) for end in value)
         if lo > hi:
             raise BadInputError(f"an interval is a pair (lo, hi) with lo <= hi, but {what} is {value!r}.  "

@@ -393,10 +393,13 @@ class CompiledChain:
 
     @cached_property
     def energy_scale(self) -> float:
-        """``M g L``-like: the weight of every rod times the length of chain that holds it, without signs; J."""
+        """``M g L``-like: the weight of every rod times the length of chain that holds it, without signs; J.
+
+        0 without weight.
+        """
         reach = np.array(list(accumulate(self.rods[:, 1])))
         ax, ay = (to_float(x) for x in self.support.constant)
-        pull = max(abs(to_float(self.gravity) + ay), abs(ax), np.finfo(float).tiny)
+        pull = max(abs(to_float(self.gravity) + ay), abs(ax))
         return float((self.rods[:, 0] * reach).sum() * pull)
 
 

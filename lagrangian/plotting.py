@@ -42,8 +42,9 @@ def plot(trajectory: Any, axes: Any = None) -> Any:
     error = np.asarray(trajectory.error, dtype=float)
     lower.semilogy(times, np.maximum(error, 1e-18), label="estimated error / rad", color="tab:red")
     if trajectory.chain.conserves_energy:
-        drift = abs(np.asarray(trajectory.energy - trajectory.energy[0], dtype=float)) / trajectory.chain.energy_scale
-        lower.semilogy(times, np.maximum(drift, 1e-18), label="energy drift / MgL", color="tab:gray", linewidth=0.8)
+        unit = "MgL" if trajectory.chain.energy_scale else "energy"
+        lower.semilogy(times, np.maximum(trajectory.energy_changes, 1e-18), label=f"energy drift / {unit}",
+                       color="tab:gray", linewidth=0.8)
     lower.axhline(float(trajectory.accuracy), color="black", linestyle=":", linewidth=1, label="accuracy asked")
     lower.legend(loc="upper left", fontsize="small", ncols=3)
     lower.set_xlabel("time / s")

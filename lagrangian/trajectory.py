@@ -76,9 +76,16 @@ class Trajectory:
         return self.times[lost[0]] if lost.size else None
 
     @property
+    def energy_changes(self) -> Any:
+        """The change of energy since the start, as a fraction of ``M g L``, without weight of the largest energy."""
+        change = abs(np.asarray(self.energy - self.energy[0], dtype=float))
+        scale = self.chain.energy_scale or float(abs(np.asarray(self.energy, dtype=float)).max())
+        return change / scale if scale else change
+
+    @property
     def energy_drift(self) -> float:
-        """The largest change of energy since the start, as a fraction of ``M g L``."""
-        return float(abs(np.asarray(self.energy - self.energy[0], dtype=float)).max() / self.chain.energy_scale)
+        """The largest of :attr:`energy_changes`."""
+        return float(self.energy_changes.max())
 
     @property
     def verdict(self) -> str:

@@ -216,6 +216,17 @@ def test_upright_and_hanging_angles_describe_one_motion(data):
     assert abs(one.energy - other.energy).max() < 1e-11 * one.chain.energy_scale
 
 
+@pytest.mark.parametrize("springs", [None, [1, 2]])
+@pytest.mark.parametrize("rates", [[1, 2], [0, 0]])
+def test_energy_without_weight_is_measured_by_itself(springs, rates):
+    """No gravity: drift is a fraction of the largest energy; 0 for a chain that rests."""
+    chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], gravity=0, springs=springs)
+    motion = simulate(chain, [0, 1], rates, [0, 1, 2])
+
+    assert chain.energy_scale == 0 and motion.energy_drift < 1e-11
+    assert abs(motion.energy_changes * abs(motion.energy).max() - abs(motion.energy - motion.energy[0])).max() < 1e-30
+
+
 def test_dense_output_passes_through_every_time():
     """trajectory.at(t) between the times is what a run with those times gives."""
     chain = CompiledChain([1, 2], [1, 1], [0.5, 0.5], [0.6, 0.6], 9.81, lambda time: (0, np.cos(5 * time)))
