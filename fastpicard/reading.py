@@ -136,7 +136,19 @@ def _read_symbol(e: Expr, t: Symbol) -> Modes:
         return _time_power(1)
     if not e.is_commutative:
         raise NotInFamilyError(f"{e} {_FAMILY}: it does not commute.  Use a commutative Symbol.")
-    return algebra.constant(power(e, 1))
+    _check_finite(e)
+    return {} if e.is_zero else algebra.constant(power(e, 1))
+
+
+@lru_cache(maxsize=1 << 10)
+def _is_parameter(base: Expr, t: Symbol) -> bool:
+    return bool(base.is_Symbol and base != t and base.is_commutative and base.is_finite is not False
+                and not base.is_zero)
+
+
+def _check_finite(e: Expr) -> None:
+    if e.is_finite is False or e.has(*_INFINITE):
+        raise BadInputError(f"every coefficient must be finite, but {e} is not.  Give a finite value.")
 
 
 def _read_other(e: Expr, t: Symbol) -> Modes:
@@ -144,8 +156,7 @@ def _read_other(e: Expr, t: Symbol) -> Modes:
     if t in e.free_symbols or t in e.atoms(Symbol):
         raise NotInFamilyError(f"{e} {_FAMILY} in {t}.  Expand it in such terms first, "
                                "for example by its Fourier or Taylor series.")
-    if e.is_finite is False or e.has(*_INFINITE):
-        raise BadInputError(f"every coefficient must be finite, but {e} is not.  Give a finite value.")
+    _check_finite(e)
     if not e.is_commutative or e.has(sympy.Derivative, sympy.Integral):
         raise NotInFamilyError(f"{e} {_FAMILY}.  Evaluate it first, or put a Symbol in its place.")
     return algebra.constant(power(e, 1))
@@ -169,7 +180,7 @@ def _read_product(e: Expr, t: Symbol) -> Modes:
             number *= rational(factor)
         elif base == t and exponent.is_Integer and exponent > 0:
             r += _checked_power(exponent, e)
-        elif base.is_Symbol and base != t and base.is_commutative and exponent.is_Integer:
+        elif _is_parameter(base, t) and exponent.is_Integer:
             monomial = multiply_monomials(monomial, ((generator(base), int(exponent)),))[1]
         else:
             rest.append(_read(factor, t))

@@ -463,6 +463,7 @@ def test_what_is_no_scalar_expression_is_refused(expression):
         mpmath.mpf("nan"),
         mpmath.inf,
         sympy.AccumBounds(-1, 1),
+        Symbol("u", infinite=True),
         np.float64("nan"),
         np.inf,
     ],
@@ -495,6 +496,16 @@ def test_an_integral_that_is_not_finite_is_refused():
         picard(lambda s, z: [1 / s], t, [1], 1)
     with pytest.raises(BadInputError, match="every component of f.* must be finite, but it is nan"):
         picard(lambda s, z: [z[0] * oo], t, [0], 1)
+
+
+@pytest.mark.parametrize("u", [Symbol("u", infinite=True), Symbol("u", finite=False)], ids=shown)
+def test_a_symbol_that_is_infinite_is_no_coefficient(u):
+    """Nor in a product, a power, a frequency or a phase."""
+    for expression in (u * cos(t), t + u**2, cos(u * t), sin(t + u), 1 / (u + a)):
+        with pytest.raises(BadInputError, match="coefficient must be finite, but u is not"):
+            PoissonSeries(expression, t)
+    with pytest.raises(BadInputError, match="reciprocal of 0"):
+        PoissonSeries(t / Symbol("o", zero=True), t)
 
 
 @pytest.mark.parametrize(

@@ -132,6 +132,14 @@ def test_a_frequency_that_vanishes_identically_is_no_frequency(nothing):
     assert t / 2 in wave.integrate().as_expr().args
 
 
+def test_a_symbol_that_is_zero_is_zero():
+    """As a frequency, a phase and a coefficient."""
+    nothing = Symbol("o", zero=True)
+
+    assert new_integrate(cos(nothing * t + nothing), t) == t
+    assert PoissonSeries(a * nothing * t + b, t) == b
+
+
 def test_resonance_by_a_relation_between_parameters_is_resonance():
     """w/(w + 1) + 1/(w + 1) = 1: the iterate with the symbol is, at w = 17/5, that of the system with the number."""
     value = Rational(17, 5)
