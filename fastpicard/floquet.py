@@ -43,6 +43,11 @@ from fastpicard.writing import write
 _BOUND_BITS = 8192  # the precision of P and T where a bound is asked for
 
 
+def _is_proper(P: Harmonics, period: Any) -> bool:
+    """Whether ``P`` and the period are finite, and the period is positive, whatever the balls stand for."""
+    return P.is_finite and bool(period.is_finite()) and bool(period > 0)
+
+
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class FloquetMatrix:
     """``Phi_n(T)``: the n-th exact Picard iterate of the Floquet matrix, a polynomial in the parameters and ``T``.
@@ -59,7 +64,8 @@ class FloquetMatrix:
     n : int, from 0 up
     period : positive number or expression free of ``t``, default ``2*pi``
         a period of ``P``, not necessarily the least; exact, so no float.
-        For constant ``P`` any positive time.
+        For constant ``P`` any positive time.  Values of parameters that make it 0 or negative are refused, but
+        by the exact polynomial, :meth:`evaluate` and :meth:`trace_at`.
 
     Attributes
     ----------
@@ -246,7 +252,27 @@ class FloquetMatrix:
         return numbers_in(self.P, values, symbols_of(self.length))
 
     def at(self, exact: Mapping[Any, Any]) -> tuple[Harmonics, Any]:
-        """``P`` and ``T`` at :meth:`numbers`, in balls of the working precision."""
+        """``P`` and ``T`` at :meth:`numbers`, in balls of the working precision, or of more where that is in doubt.
+
+        Raises
+        ------
+        BadInputError
+            if ``P`` or ``T`` is not finite there, or ``T`` not positive; in a box, everywhere.
+        """
+        found = self._at(exact)
+        if not _is_proper(*found):
+            with ctx.workprec(_BOUND_BITS):
+                found = self._at(exact)
+        if _is_proper(*found):
+            return found
+        where = ", ".join(f"{s} = {v}" for s, v in sorted(exact.items(), key=str)) or "no parameters"
+        if not found[0].is_finite or not found[1].is_finite():
+            raise BadInputError(f"P and its period must be finite and real, but one of them is not at {where}: a pole, "
+                                "or a root of a negative number.  Keep away from there.")
+        raise BadInputError(f"the period must be positive, but {self.period} is {found[1].str(5)} at {where}.  "
+                            "Choose the sign of the parameters so that it is.")
+
+    def _at(self, exact: Mapping[Any, Any]) -> tuple[Harmonics, Any]:
         return harmonics(self.P, exact), Point(arb(0), exact).polynomial(self.length)
 
     def remainder(self, values: Values | None = None, entrywise: bool = False) -> Any:
@@ -399,6 +425,7 @@ class FloquetMatrix:
         Verdict.UNSTABLE
         """
         exact = self.numbers(values)
+        self.at(exact)  # there is no verdict at a pole, nor where the period is not positive
         constant = constant_matrix(self.P, exact)
         if constant is not None:
             return by_minimal_polynomial(constant)

@@ -55,6 +55,11 @@ class Harmonics:
         return max((float(abs(q).upper()) for waves in self.waves.values() for q, _, _ in waves), default=0.0)
 
     @cached_property
+    def is_finite(self) -> bool:
+        """Whether no ball contains a pole."""
+        return all(x.is_finite() for waves in self.waves.values() for wave in waves for x in wave)
+
+    @cached_property
     def is_constant(self) -> bool:
         """Whether ``P`` does not depend on time."""
         return all(q == 0 for waves in self.waves.values() for q, _, _ in waves)

@@ -9,7 +9,7 @@ from flint import acb, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 from hypothesis import assume, given, settings, strategies as st
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, sqrt
 
-from fastpicard import BadInputError, FloquetMatrix, MissingParameterError, Verdict
+from fastpicard import BadInputError, FloquetMatrix, MissingParameterError, Verdict, tabulate
 from fastpicard.spectrum import in_rho, root_discs, symplectic_forms
 from fastpicard.stability import is_definite, judge, schur_cohn
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize
@@ -296,3 +296,48 @@ def test_irrational_coefficients_do_not_hide_the_structure():
 
     assert F.verdict({a: 1, b: fmpq(1, 10)}) in (Verdict.STABLE, Verdict.UNSTABLE)
     assert abs(cmath.phase(complex(F.multiplier_enclosures({a: 1, b: 0.1})[0]))) <= cmath.pi
+
+
+QUESTIONS = [
+    FloquetMatrix.verdict,
+    FloquetMatrix.multipliers,
+    FloquetMatrix.enclosure,
+    FloquetMatrix.remainder,
+    lambda F, values: FloquetMatrix.for_accuracy(F.P, t, values, Rational(1, 10), F.period),
+    lambda F, values: tabulate(F, values, digits=10),
+]
+
+
+@pytest.mark.parametrize("ask", QUESTIONS)
+@pytest.mark.parametrize("sign, value", [(1, -1), (-1, 1), (1, -Rational(1, 3)), (1, (-2, -1))])
+def test_values_that_make_the_period_negative_are_refused(ask, sign, value):
+    """The damped equation is stable; its matrix over -T would be that of growing solutions."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(h * t), -c]]), t, 2, sign * 2 * pi / h)
+    values = {a: Rational(3, 10), b: Rational(1, 100), c: Rational(1, 10)}
+
+    assert F.verdict({**values, h: sign}) == Verdict.STABLE
+    with pytest.raises(BadInputError, match=r"period must be positive, but -?2\*pi/h is .* at a = 3/10, b = 1/100"):
+        ask(F, {**values, h: value})
+
+
+@pytest.mark.parametrize("ask", QUESTIONS)
+@pytest.mark.parametrize(
+    "coefficient, period, value",
+    [(cos(h * t), 2 * pi / h, 0), (cos(h * t), 2 * pi / h, (-1, 1)), (1 / h, 2 * pi, 0), (1 / h, 2 * pi, (-1, 1)),
+     (sqrt(h), 2 * pi, -1)],
+)
+def test_values_at_a_pole_are_refused(ask, coefficient, period, value):
+    """Of the coefficients or of the period, on a box too; and roots of negative numbers."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - coefficient, 0]]), t, 2, period)
+
+    with pytest.raises(BadInputError, match="must be finite and real, but one of them is not at a = 1, h = "):
+        ask(F, {a: 1, h: value})
+
+
+def test_a_value_close_to_a_pole_is_none():
+    """a = pi to fifty digits, where few bits cannot tell 1/(a - pi) from a pole."""
+    F = FloquetMatrix(Matrix([[0, 1], [-b / (a - pi) - cos(t), 0]]), t, 0)
+    near = Rational(str(pi.evalf(50)))
+    found = F.enclosure({a: near, b: Rational((near - pi).evalf(60)) / 5}, 5)
+
+    assert found.overlaps(MATHIEU.enclosure({a: Rational(1, 5), b: 1}, 5))
