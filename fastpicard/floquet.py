@@ -27,7 +27,7 @@ from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Point, Values, ball, check_digits, exact_number, to_complex, upper_float
 from fastpicard.harmonics import Harmonics, harmonics, is_box, numbers_in
 from fastpicard.iteration import Increments, first_increments, identity_columns
-from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, read_matrix
+from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
 from fastpicard.modes import Modes
 from fastpicard.period import check_period, whole_turns
 from fastpicard.picard import check_order
@@ -185,7 +185,11 @@ class FloquetMatrix:
 
     def __getitem__(self, index: tuple[int, int]) -> Expr:
         """One entry, exact."""
-        return write(self.entry(*index), self.t)
+        return write(self.entry(*place(index, self.shape)), self.t)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The arguments: the iterate is computed again."""
+        return FloquetMatrix, (self.P, self.t, self.n, self.period)
 
     def as_matrix(self) -> ImmutableMatrix:
         """The exact matrix, entries expanded: polynomials in the parameters and the period."""

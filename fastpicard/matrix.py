@@ -2,7 +2,9 @@ r"""Immutable matrices of Poisson series in one time."""
 
 from __future__ import annotations
 
+import numbers
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import mpmath
@@ -10,10 +12,10 @@ import sympy
 from sympy import ImmutableMatrix, Symbol
 
 from fastpicard import modes as algebra
-from fastpicard.errors import BadTypeError, ShapeError
+from fastpicard.errors import BadInputError, BadTypeError, ShapeError
 from fastpicard.evaluate import Values, check_digits, evaluate, numpy
 from fastpicard.modes import Modes
-from fastpicard.reading import as_finite, as_time, read, read_constant, shifted
+from fastpicard.reading import as_finite, as_time, check_same_time, read, read_constant, shifted
 from fastpicard.ring import Polynomial
 from fastpicard.series import PoissonSeries
 from fastpicard.writing import write, write_at
@@ -21,6 +23,7 @@ from fastpicard.writing import write, write_at
 Rows = tuple[tuple[Modes, ...], ...]
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class SeriesMatrix:
     """A matrix whose entries are exact Poisson series in one time symbol.
 
@@ -33,10 +36,8 @@ class SeriesMatrix:
     rows : tuple of tuples      the entries as :mod:`fastpicard.modes`
     """
 
-    __slots__ = ("rows", "t")
-
-    def __init__(self, rows: Rows, t: Symbol) -> None:
-        self.rows, self.t = rows, t
+    rows: Rows
+    t: Symbol
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -44,8 +45,12 @@ class SeriesMatrix:
         return len(self.rows), len(self.rows[0])
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
-        i, j = index
+        i, j = place(index, self.shape)
         return PoissonSeries.from_modes(self.rows[i][j], self.t)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        rows, columns = self.shape
+        return _of_series, (tuple(tuple(self[i, j] for j in range(columns)) for i in range(rows)), self.t)
 
     def map(self, function: Callable[[Modes], Modes]) -> SeriesMatrix:
         """Apply a function of series to every entry."""
@@ -93,6 +98,7 @@ class SeriesMatrix:
     def __call__(self, time: Any) -> ImmutableMatrix:
         """The exact matrix at a time."""
         value = as_finite(time, "the time")
+        check_same_time(value, self.t)
         return ImmutableMatrix([[write_at(modes, value) for modes in row] for row in self.rows])
 
     def evaluate(self, time: Any, values: Values | None = None, digits: int | None = None) -> Any:
@@ -106,6 +112,31 @@ class SeriesMatrix:
     def _repr_latex_(self) -> str:
         size = sum(f.length() for row in self.rows for modes in row for f in modes.values())
         return latex_or_summary(self, size)
+
+
+def _of_series(entries: tuple[tuple[PoissonSeries, ...], ...], t: Symbol) -> SeriesMatrix:
+    return SeriesMatrix(tuple(tuple(f.modes for f in row) for row in entries), t)
+
+
+def place(index: Any, shape: tuple[int, int]) -> tuple[int, int]:
+    """The row and the column of an index ``(i, j)``; negative ones count from the end.
+
+    Raises
+    ------
+    BadTypeError
+        if it is no pair of integers.
+    BadInputError
+        if there is no such entry.
+    """
+    integers = isinstance(index, tuple) and len(index) == 2 and all(
+        isinstance(k, numbers.Integral) and not isinstance(k, bool) for k in index)
+    if not integers:
+        raise BadTypeError(f"an entry has two integers as its index, but it is {index!r}.  "
+                           "Use X[0, 1], or X.as_matrix() for parts of the matrix.")
+    i, j = map(int, index)
+    if not all(-size <= k < size for k, size in zip((i, j), shape, strict=True)):
+        raise BadInputError(f"a matrix of shape {shape} has no entry {(i, j)}.  Rows and columns count from 0.")
+    return i % shape[0], j % shape[1]
 
 
 def _dot(row: tuple[Modes, ...], column: tuple[Modes, ...]) -> Modes:
@@ -149,8 +180,10 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
         P = P(t)
     rows = _entries(P, "P")
     if not rows or any(len(row) != len(rows) for row in rows):
-        shape = (len(rows), len(rows[0]) if rows else 0)
-        raise ShapeError(f"P must be square, but its shape is {shape}.  "
+        lengths = {len(row) for row in rows} or {0}
+        evidence = (f"its shape is {(len(rows), *lengths)}" if len(lengths) == 1 else
+                    f"its {len(rows)} rows have the lengths {[len(row) for row in rows]}")
+        raise ShapeError(f"P must be square, but {evidence}.  "
                          "A system x' = P x has as many equations as unknowns.")
     entries = tuple(tuple(_read_entry(e, t, i, j) for j, e in enumerate(row)) for i, row in enumerate(rows))
     return SeriesMatrix(entries, t)
@@ -180,8 +213,8 @@ def _read_entry(entry: Any, t: Symbol, i: int, j: int) -> Modes:
 
 def read_vector(x0: Any, t: Symbol, size: int) -> tuple[Modes, ...]:
     """The initial vector ``x0``, free of ``t``, with as many entries as ``P`` has rows."""
-    if isinstance(x0, sympy.MatrixBase):
-        x0 = list(x0) if 1 in x0.shape else None
+    if isinstance(x0, sympy.MatrixBase) and 1 in x0.shape:
+        x0 = list(x0)
     if isinstance(x0, str) or not isinstance(x0, list | tuple):
         raise BadTypeError(f"x0 must be a list or a column vector, but it is {x0!r}.  Give its {size} components.")
     if len(x0) != size:

@@ -31,10 +31,10 @@ from fastpicard.evaluate import Values
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, read_matrix, read_vector
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, read_constant
-from fastpicard.ring import Polynomial
+from fastpicard.ring import Polynomial, to_expression
 from fastpicard.series import PoissonSeries
 from fastpicard.vectorise import vectorise
-from fastpicard.writing import dyadic
+from fastpicard.writing import dyadic, write
 
 # Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
 SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)
@@ -163,6 +163,7 @@ class PicardIterate:
     t : Symbol              the time
     n : int                 the order
     shape : (rows, columns)
+    P : SeriesMatrix, x0 : the initial vector as expressions, or None for the identity matrix
 
     Notes
     -----
@@ -177,13 +178,23 @@ class PicardIterate:
     shape: tuple[int, int]
     increments: Increments = field(repr=False)
     origin: Polynomial = field(repr=False)
+    P: SeriesMatrix = field(repr=False)
+    x0: tuple[Expr, ...] | None = field(repr=False, default=None)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The arguments: the iterate is computed again."""
+        t0 = to_expression(self.origin)
+        if self.x0 is None:
+            return FundamentalMatrix, (self.P, self.t, self.n, t0)
+        return fast_picard, (self.P, self.t, self.x0, self.n, t0)
 
     def to_order(self, n: int) -> PicardIterate:
         """The iterate of order ``n``, at the cost of the increments that are new."""
         n = check_order(n)
         new = object.__new__(type(self))
         for name, value in (("t", self.t), ("n", n), ("shape", self.shape),
-                            ("increments", self.increments.to_order(n)), ("origin", self.origin)):
+                            ("increments", self.increments.to_order(n)), ("origin", self.origin),
+                            ("P", self.P), ("x0", self.x0)):
             object.__setattr__(new, name, value)
         return new
 
@@ -310,9 +321,9 @@ def fast_picard(P: Any, t: Symbol, x0: Any, n: int, t0: Any = 0) -> PicardIterat
     """
     matrix = read_matrix(P, t)
     order, origin = check_order(n), _origin(t0, t)
-    columns = [read_vector(x0, t, matrix.shape[0])]
-    found = first_increments(matrix.shifted(origin), columns, order)
-    return PicardIterate(t, order, (matrix.shape[0], 1), found, origin)
+    start = read_vector(x0, t, matrix.shape[0])
+    found = first_increments(matrix.shifted(origin), [start], order)
+    return PicardIterate(t, order, (matrix.shape[0], 1), found, origin, matrix, tuple(write(x, t) for x in start))
 
 
 class FundamentalMatrix(PicardIterate):
@@ -351,4 +362,4 @@ class FundamentalMatrix(PicardIterate):
         matrix = read_matrix(P, t)
         order, origin = check_order(n), _origin(t0, t)
         found = first_increments(matrix.shifted(origin), identity_columns(matrix.shape[0]), order)
-        super().__init__(t, order, matrix.shape, found, origin)
+        super().__init__(t, order, matrix.shape, found, origin, matrix)

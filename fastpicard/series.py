@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 import sympy
+from flint import fmpq_poly
 from sympy import Expr, Symbol
 
 from fastpicard import modes as algebra
@@ -84,8 +85,8 @@ class PoissonSeries:
 
     @property
     def modes(self) -> Modes:
-        """A copy of the modes, see :mod:`fastpicard.modes`."""
-        return dict(self._modes)
+        """A copy of the modes, polynomials included, see :mod:`fastpicard.modes`."""
+        return {key: fmpq_poly(f) for key, f in self._modes.items()}
 
     @property
     def free_symbols(self) -> set[Symbol]:

@@ -85,7 +85,7 @@ def tabulate(F: FloquetMatrix, box: Values | None, digits: int = 15) -> FloquetM
 
 
 class Tabulated(FloquetMatrix):
-    """A Floquet matrix that looks enclosures up first."""
+    """A Floquet matrix that looks enclosures up first; pickled, it comes back without its table."""
 
     _table: Table
 

@@ -967,3 +967,28 @@ def test_messages_say_claim_value_and_remedy():
 def test_every_exception_is_also_the_builtin_one_would_guess(kind, builtin):
     """`except ValueError` keeps working for who does not know our names."""
     assert issubclass(kind, builtin) and issubclass(kind, FastPicardError)
+
+
+@pytest.mark.parametrize("X", [FundamentalMatrix(MATHIEU, t, 1), FloquetMatrix(MATHIEU, t, 1)])
+def test_entries_that_a_matrix_does_not_have_are_refused(X):
+    """Beyond the shape; parts of the matrix; one index alone."""
+    for index in [(2, 0), (0, -3)]:
+        with pytest.raises(BadInputError, match=r"a matrix of shape \(2, 2\) has no entry"):
+            X[index]
+    for index in [(slice(0, 1), 0), 1, (0, 0, 0), (0, 1.0), (True, 0), "ab"]:
+        with pytest.raises(BadTypeError, match="an entry has two integers as its index"):
+            X[index]
+
+
+def test_messages_show_the_shapes_that_were_given():
+    """Rows of different lengths, and a matrix in place of a vector."""
+    with pytest.raises(ShapeError, match=r"its 2 rows have the lengths \[2, 1\]"):
+        fast_picard([[0, 1], [-1]], t, [1, 1], 1)
+    with pytest.raises(BadTypeError, match=r"x0 must be .* but it is Matrix"):
+        fast_picard(MATHIEU, t, sympy.eye(2), 1)
+
+
+def test_an_exact_matrix_refuses_another_symbol_with_the_name_of_the_time():
+    """As a series does."""
+    with pytest.raises(BadInputError, match="share the name"):
+        FundamentalMatrix(MATHIEU, t, 1)(Symbol("t", real=True))

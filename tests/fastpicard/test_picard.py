@@ -1,5 +1,7 @@
 """Picard iterates: the definition, the increments, another origin of time, and the true solution."""
 
+import copy
+import pickle
 from fractions import Fraction
 
 import mpmath
@@ -9,7 +11,7 @@ import sympy
 from hypothesis import given, strategies as st
 from sympy import Matrix, Rational, S, Symbol, cos, pi, sin, sqrt
 
-from fastpicard import FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard
+from fastpicard import FloquetMatrix, FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard
 from fastpicard.iteration import SeriesIncrements, first_increments, identity_columns
 from fastpicard.matrix import read_matrix
 from tests.oracles import (
@@ -420,3 +422,33 @@ def test_iterates_print_themselves_short():
     assert isinstance(Phi.to_order(2), PicardIterate)
     assert "order 20" in Phi._repr_latex_()
     assert r"\begin{matrix}" in Phi.to_order(2)._repr_latex_()
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, copy.copy, lambda x: pickle.loads(pickle.dumps(x))])
+def test_iterates_have_copies_and_pickles(copied):
+    """Computed again from the arguments, t0 among them, and their order kept."""
+    P = [[sqrt(2), 1], [-a - b * cos(w * t), 0]]
+    for X in (
+        FundamentalMatrix(P, t, 3, t0),
+        fast_picard(P, t, [a, 1], 2, 1).to_order(3),
+        FloquetMatrix(P, t, 2, 2 * pi / w).to_order(3),
+        FundamentalMatrix(P, t, 3).series,
+        fast_picard(P, t, [a, 1], 2).series,
+    ):
+        other = copied(X)
+        assert type(other) is type(X) and other.t == X.t
+        assert other.as_matrix() == X.as_matrix()
+
+
+def test_matrices_are_immutable():
+    """Rows and time cannot be replaced."""
+    X = read_matrix([[cos(t)]], t)
+    for name in ("rows", "t"):
+        with pytest.raises(AttributeError):
+            setattr(X, name, ())
+
+
+def test_negative_indices_count_from_the_end():
+    """Of an iterate, its series and the Floquet matrix."""
+    for X in (FundamentalMatrix(MATHIEU, t, 2), FundamentalMatrix(MATHIEU, t, 2).series, FloquetMatrix(MATHIEU, t, 2)):
+        assert X[-1, 0] == X[1, 0] == X[np.int64(1), -2]

@@ -390,3 +390,11 @@ def test_a_cosine_free_of_t_is_a_constant_and_also_a_phase():
     """It comes back as it was beside powers of t; beside a wave the two form a sum, so that phases compare equal."""
     assert of(cos(phi) * t**2).integrate().as_expr() == cos(phi) * t**3 / 3
     assert of(cos(phi) * cos(t) - sin(phi) * sin(t)) == of(cos(t + phi))
+
+
+def test_a_series_cannot_be_altered_through_its_modes():
+    """The polynomials are copies too: those read are remembered, and shared by all series with the same wave."""
+    for polynomial in of(cos(7 * t)).modes.values():
+        polynomial[0] = 5
+
+    assert of(cos(7 * t)).as_expr() == cos(7 * t)
