@@ -29,7 +29,7 @@ from sympy import Symbol
 from fastpicard import doubledouble
 from fastpicard.collapsed import Collapsed, Variable
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
-from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError
 from fastpicard.evaluate import (
     EXTRA_BITS,
     Point,
@@ -211,7 +211,7 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
         if len(values) != len(names):
             raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were "
                                "given.  Give one number or array for each.")
-        arrays = numpy().broadcast_arrays(*(_array(value) for value in values))
+        arrays = _broadcast([_array(value) for value in values])
         outer = arrays[0].shape if arrays else ()
         found, errors, _ = evaluator([array.reshape(-1) for array in arrays])
         results = [x.T.reshape(outer + shape)[()] for x in ((found, errors) if bound else (found,))]
@@ -221,11 +221,36 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
 
 
 def _array(value: Any) -> Array:
-    array = numpy().asarray(value)
-    if array.dtype.kind in "USO" and not all(isinstance(x, numbers.Real | sympy.Number) for x in array.flat):
-        raise BadTypeError(f"the arguments must be numbers or arrays of numbers, but one is {value!r}.  "
-                           "Text and expressions are not evaluated.")
-    return array.astype(float)
+    """Real numbers as doubles; what a double cannot say is refused, not dropped."""
+    np = numpy()
+    if isinstance(value, np.ma.MaskedArray):
+        raise BadTypeError(f"the arguments must be arrays without a mask, but one is {value!r}.  "
+                           "Use its filled(nan): the results there are nan.")
+    try:
+        array = np.asarray(value)
+        real = array.dtype.kind in "iuf" or array.dtype.kind == "O" and all(map(_is_real, array.flat))
+        if real:
+            return array.astype(float)
+    except OverflowError:
+        raise BadInputError("the arguments must be in the range of doubles, up to 1.8e308, but one is beyond.  "
+                            "Use evaluate, which takes numbers of any size.") from None
+    except ValueError:  # rows of different lengths
+        pass
+    raise BadTypeError(f"the arguments must be real numbers or arrays of them, but one is {value!r}.  "
+                       "Text and expressions are not evaluated; nor are complex numbers, truth values and dates.")
+
+
+def _is_real(x: Any) -> bool:
+    return isinstance(x, numbers.Real | sympy.Number) and not isinstance(x, bool)
+
+
+def _broadcast(arrays: list[Array]) -> list[Array]:
+    try:
+        return list(numpy().broadcast_arrays(*arrays))
+    except ValueError:
+        raise ShapeError("the arguments must have shapes that broadcast, but these are "
+                         f"{[array.shape for array in arrays]}.  Use numpy.meshgrid or x[:, None] for all "
+                         "combinations.") from None
 
 
 def _checked(params: Sequence[Symbol], t: Symbol) -> tuple[Symbol, ...]:

@@ -992,3 +992,30 @@ def test_an_exact_matrix_refuses_another_symbol_with_the_name_of_the_time():
     """As a series does."""
     with pytest.raises(BadInputError, match="share the name"):
         FundamentalMatrix(MATHIEU, t, 1)(Symbol("t", real=True))
+
+
+@pytest.mark.parametrize(
+    "value, message",
+    [
+        (1 + 2j, "real numbers"),
+        ([1, 1j], "real numbers"),
+        (sympy.I, "real numbers"),
+        (True, "real numbers"),
+        ([a, True], "real numbers"),
+        (np.datetime64("2020-01-01"), "real numbers"),
+        (np.array(["1"]), "real numbers"),
+        (None, "real numbers"),
+        ([[1, 2], [3]], "real numbers"),
+        (np.ma.array([1.0, 2.0], mask=[True, False]), "without a mask"),
+        (10**400, "range of doubles"),
+        (np.ones(2), r"shapes that broadcast, but these are \[\(2,\), \(3,\)\]"),
+    ],
+    ids=str,
+)
+def test_compiled_functions_refuse_what_a_double_cannot_say(value, message):
+    """The imaginary part, the mask, the unit of a date: nothing is dropped; other real numbers are taken."""
+    f = FloquetMatrix(MATHIEU, t, 2).lambdify_trace([a, b])
+
+    with pytest.raises(FastPicardError, match=f"the arguments must .*{message}"):
+        f(value, np.ones(3))
+    assert f(Fraction(1, 2), [1, Rational(1, 4), mpmath.mpf(3)]).tolist() == f(0.5, [1, 0.25, 3]).tolist()
