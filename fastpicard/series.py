@@ -6,6 +6,7 @@ derivatives and integrals.  This is the face of :mod:`fastpicard.modes`.
 
 from __future__ import annotations
 
+import numbers
 from typing import Any
 
 import sympy
@@ -18,7 +19,7 @@ from fastpicard.evaluate import Values, evaluate, free_symbols
 from fastpicard.modes import Modes
 from fastpicard.reading import as_expression, as_finite, as_time, check_same_time, read, read_constant
 from fastpicard.ring import ONE, rational
-from fastpicard.writing import write, write_at
+from fastpicard.writing import dyadic, write, write_at
 
 SHORT = 12  # terms printed before the rest is counted
 
@@ -26,9 +27,10 @@ SHORT = 12  # terms printed before the rest is counted
 class PoissonSeries:
     """A finite sum of modes ``c t**r cos(q t + phi)``, ``c t**r sin(q t + phi)`` with exact coefficients.
 
-    Immutable and canonical: arithmetic returns new series, and ``==`` is
-    mathematical equality.  No operation rounds; a float in the expression is
-    the dyadic rational it stands for.
+    Immutable and canonical: arithmetic returns new series, also with an
+    expression or number on the left, and ``f == x`` is mathematical equality with
+    a series, expression or number ``x`` (``x == f`` is SymPy's, of trees).  No
+    operation rounds; a float is the dyadic rational it stands for.
 
     Parameters
     ----------
@@ -61,6 +63,8 @@ class PoissonSeries:
     >>> f.integrate().diff() == f
     True
     """
+
+    _op_priority = 20.0  # SymPy then leaves a*f and cos(t) - f to this class
 
     __slots__ = ("_hash", "_modes", "_t")
 
@@ -121,6 +125,9 @@ class PoissonSeries:
         modes = self._other(other)
         return NotImplemented if modes is None else self._make(algebra.total(self._modes, modes))
 
+    def __pos__(self) -> PoissonSeries:
+        return self
+
     def __neg__(self) -> PoissonSeries:
         return self._make(algebra.negative(self._modes))
 
@@ -131,21 +138,32 @@ class PoissonSeries:
     def __rsub__(self, other: Any) -> PoissonSeries:
         return (-self).__add__(other)
 
-    def __mul__(self, other: Any) -> PoissonSeries:
+    def __mul__(self, other: Any) -> Any:
+        if isinstance(other, sympy.MatrixBase):
+            return self.as_expr() * other
         modes = self._other(other)
         return NotImplemented if modes is None else self._make(algebra.product(self._modes, modes))
 
     __radd__ = __add__
     __rmul__ = __mul__
 
+    def __truediv__(self, other: Any) -> PoissonSeries:
+        divisor = dyadic(as_finite(other, "the divisor"))
+        if divisor == 0:
+            raise BadInputError(f"the divisor must not be 0, but {self!r} is divided by {other!r}.  Use another.")
+        return self._make(algebra.product(self._modes, read_constant(1 / divisor, self._t, "1 over the divisor")))
+
+    def __rtruediv__(self, other: Any) -> PoissonSeries:
+        return PoissonSeries(other, self._t) / self
+
     def __pow__(self, exponent: int) -> PoissonSeries:
-        if isinstance(exponent, bool) or not isinstance(exponent, int):
+        if isinstance(exponent, bool) or not isinstance(exponent, numbers.Integral):
             raise BadTypeError(f"the exponent must be an int, but it is {exponent!r}.  Use an integer from 0 up.")
         if exponent < 0:
             raise BadInputError("a power of a series is a series for exponents from 0 up, but the exponent is "
                                 f"{exponent}.  Negative powers leave the family.")
         result = self._make(algebra.constant({ONE: rational(sympy.Integer(1))}))
-        for _ in range(exponent):
+        for _ in range(int(exponent)):
             result = result * self
         return result
 
@@ -156,12 +174,18 @@ class PoissonSeries:
     def __eq__(self, other: object) -> bool:
         if isinstance(other, PoissonSeries):
             return self._t == other._t and algebra.vanishes((self - other)._modes)
-        if isinstance(other, Expr | int):
+        if isinstance(other, bool) or not isinstance(other, Expr | numbers.Number):
+            return NotImplemented
+        try:
             return algebra.vanishes((self - other)._modes)
-        return NotImplemented
+        except (BadInputError, BadTypeError):  # not of the family
+            return False
 
     def __hash__(self) -> int:
-        """Of the functions of time that occur: their coefficients have many forms, ``b/(b + c) + c/(b + c) = 1``."""
+        """Of the functions of time that occur: their coefficients have many forms, ``b/(b + c) + c/(b + c) = 1``.
+
+        Equal series have equal hashes.  An expression or a number equal to a series has a hash of its own.
+        """
         if self._hash is None:
             self._hash = hash((self._t, algebra.support(self._modes)))
         return self._hash

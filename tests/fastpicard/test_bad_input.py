@@ -1019,3 +1019,10 @@ def test_compiled_functions_refuse_what_a_double_cannot_say(value, message):
     with pytest.raises(FastPicardError, match=f"the arguments must .*{message}"):
         f(value, np.ones(3))
     assert f(Fraction(1, 2), [1, Rational(1, 4), mpmath.mpf(3)]).tolist() == f(0.5, [1, 0.25, 3]).tolist()
+
+
+@pytest.mark.parametrize("divisor", [0, 0.0, sympy.S.Zero, cos(t), PoissonSeries(cos(t), t), "2", True, nan], ids=shown)
+def test_a_series_is_not_divided_by_zero_or_by_functions_of_time(divisor):
+    """The quotient would leave the family."""
+    with pytest.raises(FastPicardError, match="divisor"):
+        PoissonSeries(cos(t), t) / divisor

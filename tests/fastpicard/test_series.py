@@ -1,6 +1,7 @@
 """Poisson series: laws of a commutative differential ring, equality, values and pickles."""
 
 import pickle
+from fractions import Fraction
 
 import mpmath
 import pytest
@@ -330,8 +331,8 @@ def test_parameters_are_all_symbols_but_the_time():
 
 
 def test_a_series_scales_a_matrix_as_the_expression_it_is():
-    """SymPy asks for the expression."""
-    assert of(cos(t)) * Matrix([a, t]) == Matrix([a * cos(t), t * cos(t)])
+    """From either side."""
+    assert of(cos(t)) * Matrix([a, t]) == Matrix([a, t]) * of(cos(t)) == Matrix([a * cos(t), t * cos(t)])
 
 
 def test_printing_is_short_where_the_series_is_long():
@@ -398,3 +399,31 @@ def test_a_series_cannot_be_altered_through_its_modes():
         polynomial[0] = 5
 
     assert of(cos(7 * t)).as_expr() == cos(7 * t)
+
+
+@given(short, short_expressions)
+def test_an_expression_on_the_left_makes_a_series_too(f, x):
+    """x + f, x - f and x f, as with the series of x."""
+    for found, expected in [(x + f, of(x) + f), (x - f, of(x) - f), (x * f, of(x) * f)]:
+        assert isinstance(found, PoissonSeries) and found == expected
+
+
+@pytest.mark.parametrize("divisor", [2, Rational(2, 3), 0.1, a, 1 + a, pi], ids=str)
+def test_a_series_is_divided_by_constants(divisor):
+    """(f / c) c = f, floats exactly; and x / c for a series c that is constant."""
+    f = of(t * cos(t) + b)
+
+    assert isinstance(f / divisor, PoissonSeries)
+    assert f / divisor * divisor == +f == f
+    assert 1 / of(divisor) * divisor == one
+    assert f**sympy.Integer(2) == f * f
+
+
+def test_a_series_equals_numbers_and_nothing_that_is_no_series():
+    """Of all types of numbers; what is outside the family, no number or text equals no series."""
+    half = of(Rational(1, 2))
+    for value in (0.5, Fraction(1, 2), sympy.Float(0.5), mpmath.mpf(0.5), Rational(1, 2), half):
+        assert half == value
+    outside = (sympy.tan(t), sympy.nan, sympy.oo, True, sympy.true, "1", "1/2", None, 1j, Symbol("t", real=True), [])
+    for value in outside:
+        assert half != value and one != value
