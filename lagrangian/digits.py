@@ -24,6 +24,7 @@ from .contexts import Context
 from .errors import QuantityError
 from .machine import rebound
 from .precision import working
+from .shaking import Pace
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
@@ -126,6 +127,7 @@ class Steps:
         self.theta, self.omega = (self.arithmetic.array(part) for part in state)
         self.gravity = self.arithmetic.number(chain.gravity)
         self.pieces: list[Piece] | None = None  # where every step is added, if it shall be kept
+        self.pace = Pace()
         self.pull: Any = None
         self.series: Any = None
         self.start: Any = None
@@ -203,7 +205,8 @@ class Steps:
         h = exp(min(logs) + log(self.tolerance) / (self.order + 1)) if logs else 2 * abs(remaining) + 1
         h = min(h, 2 * abs(remaining) + 1e-29 * abs(float(self.start)) + 1e-300,
                 FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega)))
-        if not h > 1e-30 * abs(float(self.start)) or h != h:
+        crawls = self.chain.support.function is not None and self.pace.crawls(float(self.start), float(end))
+        if not h > 1e-30 * abs(float(self.start)) or h != h or crawls:
             raise QuantityError(f"the motion cannot be followed beyond t = {float(self.start)}: the step shrinks to "
                                 f"{h}.")
         return flint.arb(h if remaining >= 0 else -h)

@@ -18,7 +18,7 @@ from .chain import CompiledChain
 from .errors import QuantityError
 from .machine import machine
 from .quantities import quantity
-from .shaking import high_low
+from .shaking import Pace, high_low
 from .stepper import DONE, STUCK, advance, room, total
 
 __all__ = ["FloatRun", "integrate_floats", "split", "wrapped"]
@@ -84,7 +84,7 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     record: Any = None
     most = 1 if chain.support.function is not None else max(1, 100_000 // n)
     most = min(most, 4096) if keep else most
-    found, steps, space = 0, 0, room(n, order)
+    found, steps, space, pace = 0, 0, room(n, order), Pace()
     while True:
         pull, waves = _shaking(chain, clock, order, rods is not None)
         if keep:
@@ -95,16 +95,30 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
         steps += made
         if keep:
             kept.append(record[:made])
-        if outcome == STUCK or not np.isfinite(state).all():
+        crawls = most == 1 and pace.crawls(clock[0], marks[-1, 0])
+        if outcome == STUCK or crawls or not np.isfinite(out if outcome == DONE else state).all():
             raise QuantityError(
                 f"the motion cannot be followed beyond t = {clock[0]:.6g}: the step shrinks to nothing there, at "
-                f"rates up to "
-                f"{abs(state[3]).max():.3g} rad/s.  Rods without mass between others snap taut; give them a mass.")
+                f"{_rates(state[3])} rad/s.  {_reason(chain)}")
         if progress is not None:
             progress(float(marks[-1, 0] if outcome == DONE else clock[0]))
         if outcome == DONE:
             angle, turns = wrapped(out[:, 0], out[:, 1])
             return FloatRun(angle, turns, out[:, 2], steps, order, np.concatenate(kept) if keep else None)
+
+
+def _rates(omega: Any) -> str:
+    fastest = abs(omega).max()
+    return f"rates up to {fastest:.3g}" if np.isfinite(fastest) else "rates beyond any float in"
+
+
+def _reason(chain: CompiledChain) -> str:
+    mass = chain.rods[:, 0]
+    if mass.min() < 1e-12 * mass.max():
+        return "Rods without mass between others snap taut; give them a mass."
+    if chain.support.function is not None:
+        return "End before it, if the support's motion is not smooth there."
+    return "Numbers beyond the range of floats need digits, such as simulate(..., digits=20)."
 
 
 def _shaking(chain: CompiledChain, clock: Any, order: int, moved: bool) -> tuple[Any, Any]:

@@ -5,7 +5,10 @@ convolutions, and every elementary function solves a linear differential equatio
 
     y = exp x:   k y_k = sum_(i=1..k) i x_i y_(k-i)
     s = sin x:   k s_k = sum i x_i c_(k-i),   c = cos x:   k c_k = -sum i x_i s_(k-i)
+    y = tan x:   k y_k = sum i x_i u_(k-i),   u = 1 + y**2;   tanh x:  u = 1 - y**2;   y = sech x:  y' = -y tanh(x) x'
     y = x**a:    k x_0 y_k = sum_(i=1..k) (a i - (k - i)) x_i y_(k-i)
+
+so that nothing grows that the function does not: tanh and 1/cosh of 1000 are 1 and 0.
 
 A SymPy expression is evaluated by walking its tree; no text is made of it and none is executed.
 """
@@ -18,7 +21,7 @@ from operator import add, mul, neg, sub, truediv
 from typing import Any
 
 import numpy as np
-from sympy import Add, E, Mul, Pow, cos, cosh, exp, log, sin, sinh, tan, tanh
+from sympy import Add, E, Mul, Pow, cos, cosh, cot, coth, csc, csch, exp, log, sec, sech, sin, sinh, tan, tanh
 
 from .errors import DriveError
 
@@ -70,6 +73,10 @@ class Jet:
     __radd__, __rmul__ = __add__, __mul__
 
     def __pow__(self, a: Any) -> Jet:
+        if isinstance(a, Jet):
+            return (a * self.log()).exp()
+        if isinstance(a, (int, float, np.integer, np.floating)) and float(a).is_integer():
+            a = int(a)
         if isinstance(a, int) and a >= 0:
             one = self._like(self._other(1 + 0 * self.coefficients[0]))
             power: Jet = reduce(mul, [self] * a, one)
@@ -79,6 +86,9 @@ class Jet:
         for k in range(1, len(x)):
             y.append(reduce(add, ((a * i - (k - i)) * x[i] * y[k - i] for i in range(1, k + 1))) / (k * x[0]))
         return self._like(y)
+
+    def __rpow__(self, a: Any) -> Jet:
+        return self.__mul__(self.elementary["log"](a + 0 * self.coefficients[0])).exp()
 
     def __truediv__(self, other: Any) -> Jet:
         return self.__mul__(other.__pow__(-1) if isinstance(other, Jet) else 1 / other)
@@ -95,13 +105,43 @@ class Jet:
                 series.append(y)
         return [self._like(y) for y in found]
 
+    def _at_start(self, *names: str) -> list[Any]:
+        return [self.elementary[name](self.coefficients[0]) for name in names]
+
     def sin(self) -> Jet:
-        return self._solve([self.elementary["sin"](self.coefficients[0]), self.elementary["cos"](self.coefficients[0])],
-                           [(1, 1), (0, -1)])[0]
+        return self._solve(self._at_start("sin", "cos"), [(1, 1), (0, -1)])[0]
 
     def cos(self) -> Jet:
-        return self._solve([self.elementary["sin"](self.coefficients[0]), self.elementary["cos"](self.coefficients[0])],
-                           [(1, 1), (0, -1)])[1]
+        return self._solve(self._at_start("sin", "cos"), [(1, 1), (0, -1)])[1]
+
+    def sinh(self) -> Jet:
+        return self._solve(self._at_start("sinh", "cosh"), [(1, 1), (0, 1)])[0]
+
+    def cosh(self) -> Jet:
+        return self._solve(self._at_start("sinh", "cosh"), [(1, 1), (0, 1)])[1]
+
+    def tan(self) -> Jet:
+        return self._tangent("tan", 1)
+
+    def tanh(self) -> Jet:
+        return self._tangent("tanh", -1)
+
+    def _tangent(self, name: str, sign: int) -> Jet:
+        """Solve ``y' = (1 + sign y**2) x'``."""
+        slopes, y = [i * x for i, x in enumerate(self.coefficients)][1:], self._at_start(name)
+        u: list[Any] = []
+        for k in range(1, len(self.coefficients)):
+            u.append(sign * reduce(add, map(mul, y, y[::-1])) + (k == 1))
+            y.append(reduce(add, map(mul, slopes[:k], u[::-1])) / k)
+        return self._like(y)
+
+    def sech(self) -> Jet:
+        y, tanh = self._at_start("sech"), self.tanh().coefficients
+        slopes = self._like([i * x for i, x in enumerate(self.coefficients)][1:])
+        rates = slopes.__mul__(self._like(tanh[:-1])).coefficients
+        for k in range(1, len(self.coefficients)):
+            y.append(-reduce(add, map(mul, rates[:k], y[::-1])) / k)
+        return self._like(y)
 
     def exp(self) -> Jet:
         return self._solve([self.elementary["exp"](self.coefficients[0])], [(0, 1)])[0]
@@ -119,22 +159,28 @@ class Jet:
 
 
 def _elementary(name: str) -> Function:
+    """A function of numbers of any type, by name."""
     def function(x: Any) -> Any:
         context = getattr(x, "context", None)
         if context is not None:
             return getattr(context, name)(x)  # an mpmath number, whose own .exp is its exponent
         method = getattr(x, name, None)
-        return method() if method is not None else getattr(np, name)(x)
+        if method is not None:
+            return method()
+        with np.errstate(all="ignore"):  # what is not finite is seen where it ends
+            return 1 / np.cosh(x) if name == "sech" else getattr(np, name)(x)
     return function
 
 
-FUNCTIONS: dict[str, Function] = {name: _elementary(name) for name in ("sin", "cos", "exp", "log", "sqrt")}
+FUNCTIONS: dict[str, Function] = {
+    name: _elementary(name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh", "sech")}
 _OPERATIONS: dict[str, Callable[..., Any]] = {
     "add": add, "subtract": sub, "multiply": mul, "divide": truediv, "negative": neg, "power": pow,
     "square": lambda x: x * x}
-_SIMPLE = {sin: "sin", cos: "cos", exp: "exp", log: "log"}
-_REWRITTEN = {tan: lambda x: sin(x) / cos(x), sinh: lambda x: (exp(x) - exp(-x)) / 2,
-              cosh: lambda x: (exp(x) + exp(-x)) / 2, tanh: lambda x: 1 - 2 / (exp(2 * x) + 1)}
+_SIMPLE = {sin: "sin", cos: "cos", tan: "tan", exp: "exp", log: "log", sinh: "sinh", cosh: "cosh", tanh: "tanh",
+           sech: "sech"}
+_REWRITTEN = {sec: lambda x: 1 / cos(x), csc: lambda x: 1 / sin(x), cot: lambda x: cos(x) / sin(x),
+              csch: lambda x: 1 / sinh(x), coth: lambda x: 1 / tanh(x)}
 
 
 def evaluate(expression: Any, t: Any, value: Any, number: Function) -> Any:
@@ -153,7 +199,12 @@ def evaluate(expression: Any, t: Any, value: Any, number: Function) -> Any:
         return reduce(add if isinstance(expression, Add) else mul, parts)
     if isinstance(expression, exp) or (isinstance(expression, Pow) and expression.base == E):
         return FUNCTIONS["exp"](evaluate(expression.exp, t, value, number))
-    if isinstance(expression, Pow) and t not in expression.exp.free_symbols:
+    if isinstance(expression, Pow) and t in expression.exp.free_symbols:
+        exponent, root = (evaluate(part, t, value, number) for part in (expression.exp, log(expression.base)))
+        return FUNCTIONS["exp"](exponent * root)
+    if isinstance(expression, Pow):
+        if isinstance(expression.base, cosh) and expression.exp.is_negative:
+            return evaluate(sech(expression.base.args[0]) ** -expression.exp, t, value, number)
         base = evaluate(expression.base, t, value, number)
         return base ** (int(expression.exp) if expression.exp.is_Integer else number(expression.exp))
     if type(expression) in _SIMPLE:

@@ -21,7 +21,7 @@ from typing import Any
 
 import flint
 import numpy as np
-from sympy import Add, Expr, Integer, Mul, Rational, cos, expand, pi, sin
+from sympy import Add, Expr, Integer, Mul, Rational, cos, cosh, expand, pi, sin, sinh, tanh
 from sympy.core.function import AppliedUndef
 
 from .angles import revolved
@@ -30,7 +30,9 @@ from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
 from .quantities import real_number, refuse_text
 
-__all__ = ["Shaking", "high_low", "shaking_of"]
+__all__ = ["Pace", "Shaking", "high_low", "shaking_of"]
+
+NUMPYS = [name for name in FUNCTIONS if hasattr(np, name)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +107,7 @@ class Shaking:
                 raise
             raise DriveError(
                 f"the Taylor stepper calls {self.name} with a power series in place of t, and it answers "
-                f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's {', '.join(FUNCTIONS)}, "
+                f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's {', '.join(NUMPYS)}, "
                 f"or choose another method, such as method='DOP853'.") from refusal
         except ArithmeticError:
             found = []
@@ -129,9 +131,11 @@ class Shaking:
             found = self._pair(t, number)
             with np.errstate(all="ignore"):
                 motion = self.motion(t, number) if self.motion else ()
-            wrong = [x for x in (*found, *motion) if not _is_real(x)]
-        except ArithmeticError as failure:
-            wrong = [failure]
+            wrong = [str(x) for x in (*found, *motion) if not _is_real(x)]
+        except (ArithmeticError, ValueError) as failure:
+            if isinstance(failure, DriveError) or (isinstance(failure, ValueError) and number is not _float):
+                raise
+            wrong = [type(failure).__name__]
         if wrong:
             raise DriveError(f"{self.name} has no finite real value at t = {_shown(t)}, but {wrong[0]}: keep within "
                              f"the times at which the support's motion is defined and smooth.")
@@ -149,6 +153,27 @@ class Shaking:
                 ratio = q / (j + 1)
                 a, b, d, e = b * ratio, -a * ratio, e * ratio, -d * ratio
         return x, y
+
+
+class Pace:
+    """Whether steps shrink before a time that they do not reach: a pole of the support's motion, say.
+
+    They do where a hundred in succession are 1e4 times shorter than the longest one, and a million times shorter than
+    the time that is left.
+    """
+
+    def __init__(self) -> None:
+        self.longest, self.short = 0.0, 0
+        self.before: float | None = None
+
+    def crawls(self, now: float, end: float) -> bool:
+        """To be asked after every step."""
+        if self.before is not None:
+            step = abs(now - self.before)
+            self.longest = max(self.longest, step)
+            self.short = self.short + 1 if 1e4 * step < self.longest and 1e6 * step < abs(end - now) else 0
+        self.before = now
+        return self.short > 100
 
 
 def _float(exact: Any) -> float:
@@ -217,6 +242,8 @@ def shaking_of_expressions(xi: Any, eta: Any, t: Any, motion: tuple[Any, ...] = 
 
 
 def _evaluated(expressions: tuple[Any, ...], t: Any) -> Callable[..., Any]:
+    """``sinh/cosh**2``, the quotient of two numbers beyond the range of floats, is ``tanh sech``."""
+    expressions = tuple(x.replace(sinh, lambda x: tanh(x) * cosh(x)) for x in expressions)
     return lambda time, number: tuple(evaluate(expression, t, time, number) for expression in expressions)
 
 

@@ -90,6 +90,9 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
                             f"remain.")
     if not isinstance(method, str) or method not in METHODS:
         raise SceneError(f"method is {method!r}: give one of {', '.join(METHODS)}.")
+    if chain.support.function is not None and method in ("taylor", *SCIPY_METHODS):
+        for x in times.tolist():
+            chain.support.at(x)  # which refuses times at which the support is nowhere
     report = _reporter(progress, times)
     events = checked(events, n)
     keep = dense or bool(events)

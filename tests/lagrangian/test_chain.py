@@ -17,13 +17,18 @@ from sympy import (
     Rational,
     cos,
     cosh,
+    coth,
+    csc,
+    csch,
     diff,
     exp,
     factorial,
     lambdify,
     log,
     pi,
+    sec,
     sin,
+    sinh,
     sqrt,
     symbols,
     tan,
@@ -253,7 +258,8 @@ def test_support_acceleration_is_a_pair_or_a_function_of_time():
     assert abs(mine - other).max() < 1e-14
 
 
-@pytest.mark.parametrize("motion", [*MOTIONS, log(2 + t) * cosh(t / 3), tan(t / 4) + tanh(t), t**Rational(3, 2)],
+@pytest.mark.parametrize("motion", [*MOTIONS, log(2 + t) * cosh(t / 3), tan(t / 4) + tanh(t), t**Rational(3, 2),
+                                    2**t + (1 + t)**t, 1 / cosh(t)**2 + sinh(t), sec(t) + csc(t), coth(t) * csch(t)],
                          ids=str)
 def test_power_series_of_a_support_are_its_derivatives(motion):
     """Coefficients of xi'' about t = 0.7 against SymPy's derivatives, in floats and in mpmath numbers."""

@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings, strategies as st
-from sympy import Rational, Symbol, cos, pi, sin, sqrt, symbols, sympify
+from sympy import Rational, Symbol, cos, cosh, log, pi, sin, sinh, sqrt, symbols, sympify, tanh
 
 from lagrangian import (
     CompiledChain,
@@ -361,6 +361,65 @@ def test_a_support_that_follows_any_smooth_function_of_time():
         simulate(rough, [0.3], [0.1], [0, 2])
     fine = simulate(smooth, [0.3], [0.1], [0, 2], method="DOP853", accuracy=1e-8)
     assert abs(fine.theta - mine.theta).max() < 1e-7
+
+
+def shaken(eta):
+    """A hanging rod on a support that moves up and down by ``eta``, or accelerates so."""
+    if callable(eta):
+        return CompiledChain([1], [1], [1], [1], support_acceleration=lambda x: (0, eta(x)))
+    return Scene([Rod.uniform(1, 1)], Support(eta=eta), 9.81, t=t, upright=False).compile()
+
+
+@pytest.mark.parametrize(("eta", "start"), [(tanh(t), 360), (1 / cosh(t), 900), (sinh(t) / cosh(t)**2, 800)])
+def test_a_support_that_has_come_to_rest_does_not_overflow(eta, start):
+    """tanh and 1/cosh have recurrences of their own, in which nothing exceeds the function."""
+    moving, still = (simulate(shaken(x), [1], [0], [start, start + 1]) for x in (eta, Rational(0)))
+
+    assert abs(moving.theta - still.theta).max() < 1e-13
+
+
+@pytest.mark.parametrize("digits", [None, 20])
+@pytest.mark.parametrize("power", [2.0, np.float64(2), np.int64(2)])
+def test_whole_numbers_are_integer_powers_of_whatever_type(power, digits):
+    """s**2.0 at s = 0 is a polynomial."""
+    mine, other = (simulate(shaken(lambda s, p=p: s**p), [1], [0], [0, 1], digits=digits) for p in (power, 2))
+
+    assert (mine.theta == other.theta).all()
+
+
+@pytest.mark.parametrize("digits", [None, 20])
+@pytest.mark.parametrize(("eta", "times", "error", "words"), [
+    (t**Rational(5, 2), [0, 1], DriveError, ["no Taylor series about t = 0", "DOP853"]),
+    ((1 - t)**Rational(7, 2), [0, 2], DriveError, ["no finite real value at t = 2", "(1 - t)**(3/2)"]),
+    (t * log(1 - t), [2, 3], DriveError, ["no finite real value at t = 2"]),
+    (1 / (1 - t), [1, 2], DriveError, ["no finite real value at t = 1"]),
+    (1 / (1 - t), [0, 2], QuantityError, ["cannot be followed beyond t = 0.9999", "step shrinks"]),
+    (lambda s: 1 / s, [0, 1], DriveError, ["support_acceleration", "t = 0"]),
+    (lambda s: np.log(s - 1), [0, 2], DriveError, ["support_acceleration", "t = 0"]),
+    (lambda s: math.sqrt(1 - s), [0, 2], DriveError, ["support_acceleration", "t = 2", "ValueError"]),
+    (lambda s: 1 / (1 - s)**3, [0, 2], QuantityError, ["cannot be followed beyond t = 0.9999"]),
+])
+def test_a_support_that_is_nowhere_or_not_smooth_is_refused(eta, times, error, words, digits):
+    """With a sentence that names the drive and the time, in floats and in digits."""
+    with pytest.raises(error) as refusal:
+        simulate(shaken(eta), [1], [0], times, digits=digits)
+
+    assert all(word in str(refusal.value) for word in words)
+
+
+def test_accelerations_where_the_support_is_nowhere_are_refused():
+    """A pole, the end of a root, and a logarithm that only the motion has; floats and mpmath numbers."""
+    for eta, time in ((1 / (1 - t), 1), ((1 - t)**Rational(7, 2), 2), (t * log(1 - t), 2)):
+        for number in (float, mpmath.mpf):
+            with pytest.raises(DriveError, match=f"no finite real value at t = {time}"):
+                shaken(eta).acceleration(number(time), [number(1)], [number(0)])
+
+
+def test_only_rods_without_mass_snap_taut():
+    """What overflows is told to take more digits."""
+    with pytest.raises(QuantityError, match="digits=20") as refusal:
+        simulate(CHAIN, [1, 2], [0, 1e200], [0, 1])
+    assert "mass" not in str(refusal.value) and "nan" not in str(refusal.value)
 
 
 TABLE = np.linspace(0, 3, 20)
