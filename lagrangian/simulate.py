@@ -14,9 +14,11 @@ import time
 from collections.abc import Callable, Mapping
 from functools import partial
 from math import ceil, log10
+from numbers import Integral
 from typing import Any
 
 import numpy as np
+from sympy import floor, log
 
 from .angles import TURN
 from .chain import CompiledChain
@@ -53,12 +55,14 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     times : m monotone times, growing or shrinking (the motion is followed backwards); s
     accuracy : largest error of any angle that is wanted; rad.  Below 1e-14 numbers of enough digits are used
     method : ``"taylor"``, a method of SciPy's ``solve_ivp`` (``"DOP853"``, ...), ``"heyoka"`` if installed, or
-        ``"linear"``, small swings about hanging, with their error against the nonlinear motion
+        ``"linear"``, small swings about hanging, with their error against the nonlinear motion.  Errors of all but
+        the first are against Taylor steps; where the support has no Taylor series (a table, functions of :mod:`math`),
+        against the same solver of SciPy with another tolerance
     digits : None, or how many decimal digits to compute with; results are then mpmath numbers.  Up to 31 it is done in
         double-double where numba is installed and its range suffices, else in balls; ``trajectory.method`` says so
     dense : whether ``trajectory.at(t)`` shall work between the times, with as many digits as at them
     events : named :class:`Crossing` to look for, such as ``flips(chain)``; their times have the digits of the states
-    progress : True for a line on the screen, or a function of the time reached
+    progress : True for a line on the screen, or a function of the time reached, by Taylor steps or SciPy
 
     Raises
     ------
@@ -66,7 +70,8 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
         Not a chain; a state of another length; times that are not monotone; a method that does not exist; an event
         that is no crossing of one of the rods.
     QuantityError, TextError, DriveError
-        Numbers that are not finite; text; a motion that cannot be followed; a support without a Taylor series.
+        Numbers that are not finite; text; a motion that cannot be followed; a support without a Taylor series, or
+        without a finite real place and acceleration at a time.
 
     Speed and accuracy
     ------------------
@@ -84,10 +89,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     n = len(chain)
     times, exact_times = _times(times)
     theta, omega = (_initial(x, name, n) for x, name in ((theta0, "theta0"), (omega0, "omega0")))
-    accuracy = float(quantity(accuracy, "accuracy"))
-    if not accuracy > 0:
-        raise QuantityError(f"an accuracy is positive, and this one is {accuracy}: give the error in rad that may "
-                            f"remain.")
+    accuracy, digits = _accuracy(accuracy), _digits(digits)
     if not isinstance(method, str) or method not in METHODS:
         raise SceneError(f"method is {method!r}: give one of {', '.join(METHODS)}.")
     if chain.support.function is not None and method in ("taylor", *SCIPY_METHODS):
@@ -98,8 +100,8 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     keep = dense or bool(events)
     if digits is not None or accuracy < FLOAT_LIMIT:
         if method != "taylor":
-            raise SceneError(f"method={method!r} computes in float64, which cannot give {accuracy:.1e}: choose "
-                             f"'taylor'.")
+            asked = f"{digits} digits" if digits is not None else f"an accuracy of {accuracy:.1e} rad"
+            raise SceneError(f"method={method!r} computes in float64, which cannot give {asked}: choose 'taylor'.")
         return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, dense, events, report)
     if method == "taylor":
         run, error = _to_accuracy(chain, theta, omega, exact_times, accuracy, keep, report)
@@ -192,8 +194,6 @@ def _moved_chain(chain: CompiledChain) -> CompiledChain:
 def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact_times: Any, accuracy: float,
                  digits: int | None, dense: bool, events: Mapping[str, Crossing],
                  report: Callable[[float], None] | None) -> Trajectory:
-    if digits is not None and (isinstance(digits, bool) or not isinstance(digits, int) or digits < 1):
-        raise QuantityError(f"digits is {digits!r}: give how many decimal digits to compute with, such as 30.")
     used = digits if digits is not None else ceil(-log10(accuracy)) + 6
     exact = [[quantity(x, "state") for x in part] for part in (theta, omega)]
     while True:
@@ -246,6 +246,27 @@ def _system(system: Any) -> tuple[CompiledChain, Any]:
                          f"scene.compile(values).")
 
 
+def _accuracy(asked: Any) -> float:
+    exact = quantity(asked, "accuracy")
+    if not exact.is_number or not exact > 0:
+        raise QuantityError(f"an accuracy is a positive number, and this one is {exact}: give the error in rad that "
+                            f"may remain.")
+    found = float(exact)
+    if found < np.finfo(float).tiny:
+        power = int(floor(log(exact, 10)))
+        raise QuantityError(f"an accuracy is a float, and this one, 1e{power}, is below all of them: say how many "
+                            f"digits to compute with, as in digits={5 - power}.")
+    return found
+
+
+def _digits(asked: Any) -> int | None:
+    if asked is None:
+        return None
+    if isinstance(asked, bool) or not isinstance(asked, Integral) or asked < 1:
+        raise QuantityError(f"digits is {asked!r}: give how many decimal digits to compute with, such as 30.")
+    return int(asked)
+
+
 def _times(times: Any) -> tuple[Any, list[Any]]:
     exact = _quantities(times, "times", "a list of times, the first of which is that of theta0")
     found = np.array([float(x) for x in exact])
@@ -276,9 +297,11 @@ def _initial(values: Any, name: str, n: int) -> Any:
         if not np.isfinite(found).all():
             raise QuantityError(f"{name} holds {found[~np.isfinite(found)].flat[0]}, which is not finite: give finite "
                                 f"numbers.")
+    elif np.ndim(values) == 0 and isinstance(values, np.ndarray):
+        raise SceneError(f"{name} is the single number {values}: give one number for each of the {n} rods.")
     else:
         found = _quantities(values, name, f"one number for each of the {n} rods")
-    if len(found) != n or np.ndim(found) != 1:
+    if np.shape(found) != (n,):
         raise SceneError(f"the chain has {n} rods, and {name} has shape {np.shape(found)}: give {n} numbers.")
     return found
 

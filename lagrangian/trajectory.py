@@ -93,9 +93,10 @@ class Trajectory:
         worst = float(self.error[-1])
         if self.accurate:
             return f"Every angle is within about {worst:.1e} rad of the true motion; {self.accuracy:.1e} was asked for."
+        remedy = ("Ask for more digits, as in simulate(..., digits=40), to see further."
+                  if self.method.startswith("taylor") else "Choose method='taylor', with digits=40 to see further.")
         return (f"From t = {float(self.predictable_until):.6g} on the accuracy asked for, {self.accuracy:.1e} rad, is "
-                f"lost: errors grow to {worst:.1e} rad.  Ask for more digits, as in simulate(..., digits=40), to see "
-                "further.")
+                f"lost: errors grow to {worst:.1e} rad.  {remedy}")
 
     def at(self, t: Any) -> tuple[Any, Any]:
         """Angles and rates at any time within the span, shape (n,), or (k, n) for k times; needs ``dense=True``.

@@ -317,6 +317,38 @@ def test_the_linear_model_is_refused_where_it_does_not_hold():
             simulate(CompiledChain(one, one, one, one, **options), [0.1], [0], [0, 1], method="linear")
 
 
+@pytest.mark.parametrize(("chain", "allowed"), [
+    (CompiledChain([1], [1], [0], [0.5], upright=False), 1e-13),
+    (CompiledChain([1], [1], [-0.3], [0.5], upright=False), 1e-3),
+    (CompiledChain([1, 1], [1, 1], [0.5, -0.3], [0.6, 0.6], upright=False), 1e-3),
+    (CompiledChain([1], [1], [0.5], [0.6], springs=[-10], upright=False), 1e-3),
+], ids=["balanced", "heavy behind the joint", "one of two", "a spring that pushes"])
+def test_modes_without_a_restoring_force_grow_as_the_motion_does(chain, allowed):
+    """t, or sinh and cosh, in place of sines: right but for the cube of the angle."""
+    n = len(chain)
+    linear, true = (simulate(chain, [1e-3] * n, [1e-3] * n, [0, 0.5, 0.7], 1e-3, method)
+                    for method in ("linear", "taylor"))
+
+    assert abs(linear.theta - true.theta).max() < allowed * abs(true.theta).max()
+    assert abs(linear.omega - true.omega).max() < allowed * abs(true.omega).max()
+    assert abs(linear.theta - true.theta).max() <= linear.error[-1] + true.error[-1]
+
+
+def test_a_verdict_advises_what_the_method_takes():
+    """Digits for Taylor steps, Taylor steps for the others."""
+    for method in ("linear", "RK23"):
+        verdict = simulate(CHAIN, [2, 2], [0, 0], [0, 4], 1e-5, method).verdict
+        assert "is lost" in verdict and "method='taylor'" in verdict
+
+
+def test_digits_are_whole_numbers_of_any_type():
+    """numpy's and SymPy's too."""
+    found = [simulate(CHAIN, [1, 2], [0, 0], [0, 1], digits=digits).theta[-1, 0] for digits in
+             (20, np.int64(20), Rational(20))]
+
+    assert found[0] == found[1] == found[2]
+
+
 def test_chaos_is_reported():
     """Ten rods from 2 rad: float64 loses the motion before 10 s, and says when."""
     ones = [1.0] * 10
@@ -597,7 +629,16 @@ def test_a_package_that_is_not_installed_is_named(monkeypatch, package, method):
     ((CHAIN, [1, 1], [0, 0], ["0", "1"]), {}, TextError, ["times[0]"]),
     ((CHAIN, [1, 1], [0, 0], [0, 1]), {"method": "euler"}, SceneError, ["'euler'", "taylor"]),
     ((CHAIN, [1, 1], [0, 0], [0, 1]), {"accuracy": 0}, QuantityError, ["positive"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"accuracy": Rational(1, 10**400)}, QuantityError, ["1e-400", "digits=405"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"accuracy": symbols("x")}, QuantityError, ["x", "positive number"]),
+    ((CHAIN, np.array(1.0), [0, 0], [0, 1]), {}, SceneError, ["2 rods", "theta0"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"digits": 20, "method": "DOP853"}, SceneError, ["20 digits", "taylor"]),
+    ((CHAIN, [1, 1], [0, 0], [0, 1]), {"digits": True}, QuantityError, ["True"]),
     ((CHAIN, [1, 1], [0, 0], [0, 1]), {"digits": 0}, QuantityError, ["digits"]),
+    ((CompiledChain([1, 0, 1], *[[1] * 3] * 3, upright=False), [1] * 3, [0] * 3, [0, 1]), {"method": "linear"},
+     SceneError, ["1e-40", "taylor"]),
+    ((CompiledChain([1], [1], [-0.5], [0.6], upright=False), [1], [0], [0, 999]), {"method": "linear"}, QuantityError,
+     ["grows as exp(", "taylor"]),
     ((CHAIN, [1, 1], [0, 0], [0, 1]), {"digits": 30, "method": "RK45"}, SceneError, ["float64"]),
     ((CHAIN, [1, 1], [0, 0], [0, 1]), {"dense": True, "method": "RK45"}, SceneError, ["Taylor"]),
     ((CHAIN, [1, 1], [0, 0], [0, 1]), {"events": {"x": Crossing(3, 0.0)}}, SceneError, ["rods 1 to 2"]),
