@@ -6,7 +6,7 @@ import flint
 import mpmath
 import numpy as np
 import pytest
-from sympy import Rational, Symbol, cos, pi, sin, sqrt
+from sympy import Rational, Symbol, cos, exp, pi, sin, sqrt
 
 from lagrangian import CompiledChain, QuantityError, Rod, Scene, SceneError, Support, chain as chains, redone, simulate
 from lagrangian.floats import split
@@ -372,6 +372,16 @@ def test_a_shaken_chain_is_followed_as_well_far_from_zero(start):
     motion, exact = (simulate(chain, [1], [0], [start, start + 2], digits=digits) for digits in (None, 25))
 
     assert abs(motion.theta[-1, 0] - float(exact.theta[-1, 0])) <= motion.error[-1] < 1e-10
+
+
+def test_functions_of_time_far_from_zero_lose_what_is_said():
+    """A drive that is no sum of waves gets its time as a float, and the estimate shows what its rounding takes."""
+    t, start = Symbol("t"), 10**7
+    support = Support(eta=exp(cos(2 * pi * t)) / 10)
+    chain = Scene([Rod.uniform(1, 1)], support, gravity=9.81, t=t, upright=False).compile()
+    motion, exact = (simulate(chain, [1], [0], [start, start + 1.5], digits=digits) for digits in (None, 25))
+
+    assert abs(motion.theta[-1, 0] - float(exact.theta[-1, 0])) <= motion.error[-1] < 1e-7
 
 
 def test_released_from_horizontal_no_step_is_too_long():
