@@ -207,8 +207,8 @@ class Steps:
                 FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega)))
         crawls = self.chain.support.function is not None and self.pace.crawls(float(self.start), float(end))
         if not h > 1e-30 * abs(float(self.start)) or h != h or crawls:
-            raise QuantityError(f"the motion cannot be followed beyond t = {float(self.start)}: the step shrinks to "
-                                f"{h}.")
+            raise QuantityError(f"the motion cannot be followed beyond t = {float(self.start):.6g}: the step shrinks "
+                                f"to {h:.3g}.  End before it, or give masses to rods without.")
         return flint.arb(h if remaining >= 0 else -h)
 
     def _moved(self, h: Any) -> tuple[Any, Any]:

@@ -102,9 +102,9 @@ class Shaking:
         try:
             self._value(t, number)
             found = [part if isinstance(part, Jet) else time * zero + part for part in self._pair(time, number)]
+        except DriveError:
+            raise
         except (TypeError, AttributeError, ValueError) as refusal:
-            if isinstance(refusal, DriveError):
-                raise
             raise DriveError(
                 f"the Taylor stepper calls {self.name} with a power series in place of t, and it answers "
                 f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's {', '.join(NUMPYS)}, "
@@ -132,9 +132,11 @@ class Shaking:
             with np.errstate(all="ignore"):
                 motion = self.motion(t, number) if self.motion else ()
             wrong = [str(x) for x in (*found, *motion) if not _is_real(x)]
+        except DriveError:
+            raise
         except (ArithmeticError, ValueError) as failure:
-            if isinstance(failure, DriveError) or (isinstance(failure, ValueError) and number is not _float):
-                raise
+            if isinstance(failure, ValueError) and number is not _float:
+                raise  # from a function that takes floats alone
             wrong = [type(failure).__name__]
         if wrong:
             raise DriveError(f"{self.name} has no finite real value at t = {_shown(t)}, but {wrong[0]}: keep within "
