@@ -265,7 +265,7 @@ class FloquetMatrix:
         """
         found = self._at(exact)
         if not _is_proper(*found):
-            with ctx.workprec(_BOUND_BITS):
+            with working(_BOUND_BITS):
                 found = self._at(exact)
         if _is_proper(*found):
             return found

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 from numbers import Complex, Real
-from typing import Any
+from typing import Any, TypeVar
 
 import flint
 import numpy as np
@@ -32,6 +32,7 @@ from .quantities import real_number, refuse_text
 
 __all__ = ["Pace", "Shaking", "high_low", "shaking_of"]
 
+Answer = TypeVar("Answer")
 NUMPYS = [name for name in FUNCTIONS if hasattr(np, name)]
 
 
@@ -78,7 +79,9 @@ class Shaking:
         """The pair at a time, as floats or in ``arithmetic``.  Raises DriveError where it has no finite real value."""
         number = arithmetic.number if arithmetic else _float
         if self.function is not None:
-            return self._value(t, number)
+            if arithmetic is None:
+                return self._value(t, number)
+            return self._answered(lambda: self._value(t, number), "in numbers of more digits", "give floats")
         if arithmetic is None:
             (ax, ay), waves = self.floats
             for _, turns, low, cx, sx, cy, sy in waves.tolist():
@@ -100,21 +103,29 @@ class Shaking:
         zero, one = number(Integer(0)), number(Integer(1))
         time = Jet([t, one, *[zero] * (order - 1)][: order + 1], FUNCTIONS)
         try:
-            self._value(t, number)
-            found = [part if isinstance(part, Jet) else time * zero + part for part in self._pair(time, number)]
-        except DriveError:
-            raise
-        except (TypeError, AttributeError, ValueError) as refusal:
-            raise DriveError(
-                f"the Taylor stepper calls {self.name} with a power series in place of t, and it answers "
-                f"{type(refusal).__name__}: {refusal}.  Write it with + - * / ** and numpy's {', '.join(NUMPYS)}, "
-                f"or choose another method, such as method='DOP853'.") from refusal
+            found = self._answered(lambda: self._expanded(t, time, zero, number), "with a power series in place of t",
+                                   "choose another method, such as method='DOP853'")
         except ArithmeticError:
             found = []
         if not found or not all(_is_real(x) for part in found for x in part.coefficients):
             raise DriveError(f"{self.name} has no Taylor series about t = {_shown(t)}: not all its derivatives are "
                              f"finite there.  Start elsewhere, or choose another method, such as method='DOP853'.")
         return found[0].coefficients, found[1].coefficients
+
+    def _expanded(self, t: Any, time: Jet, zero: Any, number: Any) -> list[Jet]:
+        self._value(t, number)
+        return [part if isinstance(part, Jet) else time * zero + part for part in self._pair(time, number)]
+
+    def _answered(self, ask: Callable[[], Answer], way: str, else_do: str) -> Answer:
+        """What the function answers; DriveError where it takes floats alone."""
+        try:
+            return ask()
+        except DriveError:
+            raise
+        except (TypeError, AttributeError, ValueError) as refusal:
+            raise DriveError(
+                f"{self.name} is called {way}, and it answers {type(refusal).__name__}: {refusal}.  Write it with "
+                f"+ - * / ** and numpy's {', '.join(NUMPYS)}, or {else_do}.") from refusal
 
     def _pair(self, t: Any, number: Any) -> tuple[Any, Any]:
         with np.errstate(all="ignore"):
@@ -128,10 +139,12 @@ class Shaking:
 
     def _value(self, t: Any, number: Any) -> tuple[Any, Any]:
         try:
-            found = self._pair(t, number)
+            time = t if number is _float else Jet([t], FUNCTIONS)
+            found = self._pair(time, number)
             with np.errstate(all="ignore"):
-                motion = self.motion(t, number) if self.motion else ()
-            wrong = [str(x) for x in (*found, *motion) if not _is_real(x)]
+                motion = self.motion(time, number) if self.motion else ()
+            found = _first(found[0]), _first(found[1])
+            wrong = [str(x) for x in (*found, *map(_first, motion)) if not _is_real(x)]
         except DriveError:
             raise
         except (ArithmeticError, ValueError) as failure:
@@ -186,6 +199,10 @@ def high_low(exact: Any) -> tuple[float, float]:
     """An exact number as the nearest float and what that leaves."""
     high = _float(exact)
     return high, float((exact - Rational(high)).evalf(20, maxn=1200))
+
+
+def _first(x: Any) -> Any:
+    return x.coefficients[0] if isinstance(x, Jet) else x
 
 
 def _is_real(x: Any) -> bool:

@@ -1,6 +1,7 @@
 """Accelerations of a chain in O(n) against the dense equations, in every arithmetic, for every feature of a scene."""
 
 import json
+import math
 import pickle
 from decimal import Decimal
 from fractions import Fraction
@@ -385,6 +386,20 @@ def test_numbers_of_all_kinds_stand_side_by_side():
     states = np.array([[mpmath.mpf(1), mpmath.mpf(2)], [third, third]])
     many = chain.acceleration(third, states, states)
     assert many.dtype == object and list(many[:, 1]) == list(chain.acceleration(third, states[:, 1], states[:, 1]))
+
+
+def test_a_function_of_time_takes_numbers_of_all_kinds_or_says_so():
+    """numpy's functions take mpmath numbers here, and the float that math.cos makes of them is no answer."""
+    smooth = CompiledChain([1], [1], [1], [1], 10, lambda s: (0, np.cos(3 * s)))
+    rounded = CompiledChain([1], [1], [1], [1], 10, lambda s: (0, math.cos(3 * s)))
+    context = mpmath.mp.clone()
+    context.dps = 40
+    x, time = context.mpf(1), context.mpf(1) / 3
+    found = smooth.acceleration(time, [x], [0 * x])
+
+    assert abs(found[0] - (10 + context.cos(3 * time)) * context.sin(x)) < 1e-38
+    with pytest.raises(DriveError, match=r"numbers of more digits.*give floats"):
+        rounded.acceleration(time, [x], [0 * x])
 
 
 def test_compile_says_which_symbol_has_no_value():
