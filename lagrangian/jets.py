@@ -193,6 +193,9 @@ def evaluate(expression: Any, t: Any, value: Any, number: Function) -> Any:
     if t not in expression.free_symbols:
         if not expression.is_number:
             raise DriveError(f"the drive is a function of {t} alone, and {expression} is in it: give it a value.")
+        if expression.is_real is False:
+            raise DriveError(f"the drive holds {expression}, which is not real: write it with real numbers, powers of "
+                             f"{t} with positive ones.")
         return number(expression)
     if isinstance(expression, (Add, Mul)):
         parts = [evaluate(part, t, value, number) for part in expression.args]
@@ -212,4 +215,5 @@ def evaluate(expression: Any, t: Any, value: Any, number: Function) -> Any:
     if type(expression) in _REWRITTEN:
         return evaluate(_REWRITTEN[type(expression)](expression.args[0]), t, value, number)
     raise DriveError(f"the drive contains {expression}, whose Taylor series is not known here: write it with sums, "
-                     f"products, powers, sin, cos, exp, log, or give support_acceleration as a function of t.")
+                     f"products, powers, {', '.join(_SIMPLE.values())}, or give support_acceleration as a function of "
+                     f"t.")

@@ -209,7 +209,10 @@ def _is_real(x: Any) -> bool:
     """Whether a number of any type is real and finite."""
     if isinstance(x, flint.arb):
         return bool(x.is_finite())
-    return not (isinstance(x, Complex) and not isinstance(x, Real)) and isfinite(x)
+    try:
+        return not (isinstance(x, Complex) and not isinstance(x, Real)) and isfinite(x)
+    except TypeError:  # no number
+        return False
 
 
 def _shown(t: Any) -> str:

@@ -426,6 +426,8 @@ def test_whole_numbers_are_integer_powers_of_whatever_type(power, digits):
     (t * log(1 - t), [2, 3], DriveError, ["no finite real value at t = 2"]),
     (1 / (1 - t), [1, 2], DriveError, ["no finite real value at t = 1"]),
     (1 / (1 - t), [0, 2], QuantityError, ["cannot be followed beyond t = 0.9999", "step shrinks"]),
+    ((-2)**t, [0, 1], DriveError, ["log(2) + I*pi", "not real"]),
+    (lambda s: None, [0, 1], DriveError, ["support_acceleration", "t = 0", "None"]),
     (lambda s: 1 / s, [0, 1], DriveError, ["support_acceleration", "t = 0"]),
     (lambda s: np.log(s - 1), [0, 2], DriveError, ["support_acceleration", "t = 0"]),
     (lambda s: math.sqrt(1 - s), [0, 2], DriveError, ["support_acceleration", "t = 2", "ValueError"]),
