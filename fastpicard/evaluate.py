@@ -127,6 +127,10 @@ def ball(value: Any) -> Any:
     return arb(value) if isinstance(value, fmpq) else expression_ball(value, {})
 
 
+_CONSTANTS: dict[Any, Callable[[], Any]] = {
+    sympy.pi: arb.pi, sympy.E: arb.const_e, sympy.Catalan: arb.const_catalan, sympy.EulerGamma: arb.const_euler,
+    sympy.GoldenRatio: lambda: (1 + arb(5).sqrt()) / 2,
+}
 _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
     sympy.sin: lambda x: x.sin(), sympy.cos: lambda x: x.cos(), sympy.tan: lambda x: x.tan(),
     sympy.exp: lambda x: x.exp(), sympy.log: lambda x: x.log(), sympy.atan: lambda x: x.atan(),
@@ -141,10 +145,8 @@ def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
         return ball(values[e])
     if e.is_Rational or e.is_Float:
         return arb(rational(e))
-    if e is sympy.pi:
-        return arb.pi()
-    if e is sympy.E:
-        return arb.const_e()
+    if e in _CONSTANTS:
+        return _CONSTANTS[e]()
     parts = [expression_ball(x, values) for x in e.args]
     if e.is_Add:
         return sum(parts, arb(0))
@@ -154,7 +156,7 @@ def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
         return _power(parts[0], parts[1], e.exp)
     if e.func in _FUNCTIONS:
         return _FUNCTIONS[e.func](*parts)
-    raise BadInputError(f"no rigorous value of {e} is known: {e.func} has no ball arithmetic here.  "
+    raise BadInputError(f"no rigorous value of {e} is known: {e.func.__name__} has no ball arithmetic here.  "
                         "Replace it by a Symbol and give that a value.")
 
 

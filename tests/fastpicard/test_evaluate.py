@@ -140,3 +140,19 @@ def test_parameters_with_strange_names_have_values_too(name):
     p = Symbol(name)
 
     assert PoissonSeries(p * t, t).evaluate(2, {p: 3}) == 6
+
+
+@pytest.mark.parametrize("constant", [pi, sympy.E, sympy.GoldenRatio, sympy.Catalan, sympy.EulerGamma], ids=str)
+def test_known_constants_have_every_digit(constant):
+    """As SymPy gives them, fifty digits and more."""
+    found = PoissonSeries(constant * cos(t), t).evaluate(0, digits=60)
+
+    with mpmath.workdps(80):
+        assert abs(found - mpmath.mpf(constant.evalf(80)._mpf_)) < mpmath.mpf(10) ** -59
+
+
+@pytest.mark.parametrize("constant", [sympy.zeta(3), sympy.TribonacciConstant], ids=str)
+def test_constants_without_balls_are_refused_by_name(constant):
+    """The sentence speaks of the constant, not of a class."""
+    with pytest.raises(BadInputError, match=r"no rigorous value of (zeta\(3\)|\w+) is known: \w+ has no ball"):
+        PoissonSeries(constant * cos(t), t).evaluate(1)
