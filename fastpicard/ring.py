@@ -48,7 +48,7 @@ _related: set[int] = set()  # the generators with a relation: primes under a roo
 _cosines: dict[int, tuple[Fraction, Fraction]] = {}  # (x, e) of the generators whose power e is cos(pi x)
 _sums: dict[int, Polynomial] = {}  # what the generators are that are polynomials in others
 _UNIT = fmpq(1)
-_TINY = 1e-12
+_TINY, _LARGE = 1e-12, 1e12
 _LARGEST_DENOMINATOR = 10_000
 
 
@@ -261,22 +261,25 @@ def rational_value(terms: Polynomial) -> Any | None:
     if not has_relations(terms):
         return None
     value = _sample(terms)
-    if value is None or abs(value.imag) > _TINY:
+    if value is None or abs(value) > _LARGE or abs(sympy.im(value)) > _TINY:
         return None
-    near = Fraction(value.real).limit_denominator(_LARGEST_DENOMINATOR)
+    near = Fraction(float(sympy.re(value))).limit_denominator(_LARGEST_DENOMINATOR)
     rest, found = dict(terms), fmpq(near.numerator, near.denominator)
     add_term(rest, ONE, -found)
     return found if is_zero(rest) else None
 
 
-def _sample(terms: Polynomial) -> complex | None:
+def _sample(terms: Polynomial) -> Expr | None:
     """The value where every symbol is some number that its assumptions allow; None where that is no finite number."""
     e = to_expression(terms)
     symbols = sorted(e.free_symbols, key=str)
-    values = {x: (-1 if x.is_negative else 1) * sympy.Rational(sympy.prime(k), 1 if x.is_integer else 7)
+    values = {x: (-1 if x.is_negative else 1) * sympy.Rational(sympy.prime(k), 1 if x.is_integer else 101)
               for k, x in enumerate(symbols, 5)}
-    value = e.subs(values).evalf(20)
-    return complex(value) if value.is_number and value.is_finite else None
+    try:
+        value = e.subs(values).evalf(20, strict=True)
+    except ArithmeticError:  # it overflows, or cancels beyond all digits
+        return None
+    return value if value.is_number and value.is_finite else None
 
 
 def normal(terms: Polynomial) -> Polynomial:
