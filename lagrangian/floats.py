@@ -46,7 +46,12 @@ class FloatRun:
 
 
 def split(values: Any, angles: bool) -> Any:
-    """Exact numbers, or floats, as rows high, low, turns; shape (3, n); turns are 0 unless they are angles."""
+    """Exact numbers, or floats, as rows high, low, turns; shape (3, n); turns are 0 unless they are angles.
+
+    What is split already, (3, n), stays as it is.
+    """
+    if np.ndim(values) == 2:
+        return values
     if isinstance(values, np.ndarray) and values.dtype != object:
         if not angles:
             return np.stack([values, 0 * values, 0 * values])
@@ -58,7 +63,7 @@ def split(values: Any, angles: bool) -> Any:
     for k, x in enumerate(values):
         exact = quantity(x, "a state")
         whole = int(floor(exact / (2 * pi) + Rational(1, 2))) if angles else 0
-        out[:, k] = *high_low(exact - 2 * pi * whole), whole
+        out[:, k] = *high_low(exact - 2 * pi * whole if whole else exact), whole
     return out
 
 
@@ -80,7 +85,7 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     marks = np.ascontiguousarray(split(times, False)[:2].T)
     state, clock = np.zeros((5, n)), marks[0].copy()
     state[:3], state[3:] = split(theta, True), split(omega, False)[:2]
-    out, kept = np.empty((len(times), 3, n)), []
+    out, kept = np.empty((len(marks), 3, n)), []
     record: Any = None
     most = 1 if chain.support.function is not None else max(1, 100_000 // n)
     most = min(most, 4096) if keep else most

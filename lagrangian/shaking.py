@@ -198,7 +198,8 @@ def _float(exact: Any) -> float:
 def high_low(exact: Any) -> tuple[float, float]:
     """An exact number as the nearest float and what that leaves."""
     high = _float(exact)
-    return high, float((exact - Rational(high)).evalf(20, maxn=1200))
+    rest = exact - Rational(high)
+    return high, float(rest if rest.is_Rational else rest.evalf(20, maxn=1200))
 
 
 def _first(x: Any) -> Any:

@@ -28,7 +28,7 @@ from .digits import DigitRun, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .equations import EquationsOfMotion
 from .errors import DriveError, NotASceneError, QuantityError, SceneError
-from .floats import FINEST, ORDER, FloatRun, integrate_floats, wrapped
+from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
 from .pieces import BallPieces, FloatPieces
 from .quantities import quantity, refuse_text
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
@@ -87,7 +87,7 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     """
     chain, evaluated = _system(system)
     n = len(chain)
-    times, exact_times = _times(times)
+    times, given_times = _times(times)
     theta, omega = (_initial(x, name, n) for x, name in ((theta0, "theta0"), (omega0, "omega0")))
     accuracy, digits = _accuracy(accuracy), _digits(digits)
     if not isinstance(method, str) or method not in METHODS:
@@ -102,9 +102,10 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
         if method != "taylor":
             asked = f"{digits} digits" if digits is not None else f"an accuracy of {accuracy:.1e} rad"
             raise SceneError(f"method={method!r} computes in float64, which cannot give {asked}: choose 'taylor'.")
-        return _with_digits(chain, theta, omega, times, exact_times, accuracy, digits, dense, events, report)
+        return _with_digits(chain, theta, omega, times, given_times, accuracy, digits, dense, events, report)
     if method == "taylor":
-        run, error = _to_accuracy(chain, theta, omega, exact_times, accuracy, keep, report)
+        start = split(theta, True), split(omega, False)
+        run, error = _to_accuracy(chain, *start, split(given_times, False), accuracy, keep, report)
     else:
         if keep:
             raise SceneError(f"dense output and events come from Taylor series, and method is {method!r}: choose "
@@ -191,11 +192,12 @@ def _moved_chain(chain: CompiledChain) -> CompiledChain:
                          chain.upright)
 
 
-def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, exact_times: Any, accuracy: float,
+def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, given_times: Any, accuracy: float,
                  digits: int | None, dense: bool, events: Mapping[str, Crossing],
                  report: Callable[[float], None] | None) -> Trajectory:
     used = digits if digits is not None else ceil(-log10(accuracy)) + 6
     exact = [[quantity(x, "state") for x in part] for part in (theta, omega)]
+    exact_times = [quantity(x, "times") for x in given_times]
     while True:
         kind, run, finer = _twice(chain, exact[0], exact[1], exact_times, used, dense or bool(events), report)
         angles, rates = run.theta, run.omega
@@ -267,14 +269,26 @@ def _digits(asked: Any) -> int | None:
     return int(asked)
 
 
-def _times(times: Any) -> tuple[Any, list[Any]]:
-    exact = _quantities(times, "times", "a list of times, the first of which is that of theta0")
-    found = np.array([float(x) for x in exact])
+def _times(times: Any) -> tuple[Any, Any]:
+    """Times as floats, and as they were given: the same floats, or exact numbers."""
+    given: Any = _plain_times(times)
+    if given is None:
+        given = _quantities(times, "times", "a list of times, the first of which is that of theta0")
+    found = np.array([float(x) for x in given]) if isinstance(given, list) else given
     steps = np.diff(found)
     if not len(found) or not ((steps >= 0).all() or (steps <= 0).all()):
         raise SceneError(f"times must grow, or shrink for the motion backwards, and be at least one, but they are "
                          f"{found.tolist()}: give times in order.")
-    return found, exact
+    return found, given
+
+
+def _plain_times(times: Any) -> Any:
+    """Finite floats as they are, which may be many, shape (m,); None for anything else."""
+    if isinstance(times, list) and all(type(x) is float for x in times):
+        times = np.array(times)
+    if isinstance(times, np.ndarray) and times.ndim == 1 and times.dtype.kind == "f" and np.isfinite(times).all():
+        return times.astype(np.float64)
+    return None
 
 
 def _quantities(values: Any, name: str, wanted: str) -> list[Any]:
