@@ -226,7 +226,7 @@ def shaking_of(given: Any) -> Shaking:
     if isinstance(given, Shaking):
         return given
     if callable(given):
-        return Shaking(function=lambda t, number: given(t))
+        return Shaking(function=_Given(given))
     try:
         ax, ay = given
     except (TypeError, ValueError):
@@ -266,8 +266,28 @@ def shaking_of_expressions(xi: Any, eta: Any, t: Any, motion: tuple[Any, ...] = 
 
 def _evaluated(expressions: tuple[Any, ...], t: Any) -> Callable[..., Any]:
     """``sinh/cosh**2``, the quotient of two numbers beyond the range of floats, is ``tanh sech``."""
-    expressions = tuple(x.replace(sinh, lambda x: tanh(x) * cosh(x)) for x in expressions)
-    return lambda time, number: tuple(evaluate(expression, t, time, number) for expression in expressions)
+    return _Expressions(tuple(x.replace(sinh, lambda x: tanh(x) * cosh(x)) for x in expressions), t)
+
+
+@dataclass(frozen=True)
+class _Given:
+    """A function of t alone as one that is told the arithmetic too; it can be pickled if the function can."""
+
+    function: Callable[[Any], Any]
+
+    def __call__(self, t: Any, number: Any) -> Any:
+        return self.function(t)
+
+
+@dataclass(frozen=True)
+class _Expressions:
+    """Expressions in the Symbol t as a function of time and arithmetic, which can be pickled."""
+
+    expressions: tuple[Any, ...]
+    t: Any
+
+    def __call__(self, time: Any, number: Any) -> tuple[Any, ...]:
+        return tuple(evaluate(expression, self.t, time, number) for expression in self.expressions)
 
 
 class _NotAWave(Exception):

@@ -291,9 +291,18 @@ def test_a_tension_free_fall_keeps_every_rod_from_turning():
     assert (chain.acceleration(0, [0.3, 1.1, 2.0], [0, 0, 0]) == 0).all()
 
 
-def test_a_chain_can_be_sent_to_another_process():
-    """pickle gives the same chain, drive in waves included."""
-    chain = Scene([Rod.uniform(1, 2)] * 3, Support(eta=cos(3 * t)), 10, t=t).compile()
+def falling(time):
+    """A support that falls with a part of g."""
+    return 0, -time / (1 + time)
+
+
+@pytest.mark.parametrize("chain", [
+    Scene([Rod.uniform(1, 2)] * 3, Support(eta=cos(3 * t)), 10, t=t).compile(),
+    Scene([Rod.uniform(1, 2)] * 3, Support(eta=tanh(t), xi=sinh(t)), 10, t=t).compile(),
+    CompiledChain([1, 1, 1], [1, 1, 1], [1, 1, 1], [1, 1, 1], support_acceleration=falling)],
+    ids=["waves", "expressions", "function"])
+def test_a_chain_can_be_sent_to_another_process(chain):
+    """pickle gives the same chain, its drive included."""
     copy = pickle.loads(pickle.dumps(chain))
     state = 0.4, [0.1, 0.2, 0.3], [1.0, 2.0, 3.0]
 
