@@ -29,8 +29,9 @@ class PoissonSeries:
 
     Immutable and canonical: arithmetic returns new series, also with an
     expression or number on the left, and ``f == x`` is mathematical equality with
-    a series, expression or number ``x`` (``x == f`` is SymPy's, of trees).  No
-    operation rounds; a float is the dyadic rational it stands for.
+    a series, expression or number ``x`` (``x == f`` is SymPy's, of trees).  What
+    SymPy cannot show to be equal, ``gamma(a + 1)`` and ``a gamma(a)``, counts as
+    different.  No operation rounds; a float is the dyadic rational it stands for.
 
     Parameters
     ----------

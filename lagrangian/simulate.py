@@ -72,6 +72,8 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     QuantityError, TextError, DriveError
         Numbers that are not finite; text; a motion that cannot be followed; a support without a Taylor series, or
         without a finite real place and acceleration at a time.
+    NotInstalledError
+        A method of SciPy's or heyoka's without that package.
 
     Speed and accuracy
     ------------------

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 
 from .chain import CompiledChain
 from .errors import QuantityError, SceneError
+from .optional import optional
 from .recursion import accelerate_rods
 
 __all__ = ["FINEST", "SCIPY_METHODS", "integrate_heyoka", "integrate_scipy"]
@@ -24,11 +23,9 @@ def integrate_scipy(system: Any, theta: Any, omega: Any, times: Any, method: str
     """Angles and rates, shape (times, n) each, and the number of evaluations, by ``scipy.integrate.solve_ivp``.
 
     ``system`` is anything with ``acceleration(t, theta, omega)``; ``progress`` is told how far evaluations have come.
-    Raises QuantityError where the solver gives up.
+    Raises QuantityError where the solver gives up, NotInstalledError without SciPy.
     """
-    if find_spec("scipy") is None:
-        raise SceneError(f"method={method!r} is SciPy's, and SciPy is not installed: pip install scipy, or "
-                         f"method='taylor'.")
+    solve = optional("scipy.integrate", f"method={method!r}", "method='taylor'").solve_ivp
     n, reached = len(theta), times[0]
 
     def rate(t: float, y: Any) -> Any:
@@ -43,7 +40,6 @@ def integrate_scipy(system: Any, theta: Any, omega: Any, times: Any, method: str
     if len(asked) == 1:
         return np.tile(theta, (len(times), 1)), np.tile(omega, (len(times), 1)), 0
     tolerance = max(FINEST, tolerance)
-    solve = import_module("scipy.integrate").solve_ivp
     result = solve(rate, (asked[0], asked[-1]), start, method, asked, rtol=tolerance, atol=tolerance)
     if not result.success:
         raise QuantityError(f"{method} stopped: {result.message}  Ask for less accuracy, or method='taylor'.")
@@ -79,11 +75,11 @@ def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
 
 def integrate_heyoka(chain: CompiledChain, theta: Any, omega: Any, times: Any,
                      tolerance: float) -> tuple[Any, Any, int]:
-    """Angles and rates by heyoka, which first compiles the equations, for minutes where chains are long."""
-    if find_spec("heyoka") is None:
-        raise SceneError("method='heyoka' needs heyoka, which is not installed: pip install heyoka, or "
-                         "method='taylor'.")
-    heyoka = import_module("heyoka")
+    """Angles and rates by heyoka, which first compiles the equations, for minutes where chains are long.
+
+    Raises NotInstalledError without it.
+    """
+    heyoka = optional("heyoka", "method='heyoka'", "method='taylor'")
     n, start = len(theta), [*theta, *omega]
     system = heyoka_system(chain, heyoka)
     integrator = heyoka.taylor_adaptive(system, start, time=float(times[0]), tol=max(1e-16, tolerance))

@@ -77,7 +77,10 @@ class Trajectory:
 
     @property
     def energy_changes(self) -> Any:
-        """The change of energy since the start, as a fraction of ``M g L``, without weight of the largest energy."""
+        """The change of energy since the start, shape (times,), as a fraction of ``M g L``.
+
+        Without weight it is a fraction of the largest energy.
+        """
         change = abs(np.asarray(self.energy - self.energy[0], dtype=float))
         scale = self.chain.energy_scale or float(abs(np.asarray(self.energy, dtype=float)).max())
         return change / scale if scale else change

@@ -606,15 +606,17 @@ def test_one_axes_are_not_the_two_of_a_picture():
     pyplot.close(figure)
 
 
-@pytest.mark.parametrize(("package", "method"), [("matplotlib", "plot"), ("matplotlib", "animate"),
-                                                 ("xarray", "to_xarray")])
-def test_a_package_that_is_not_installed_is_named(monkeypatch, package, method):
+@pytest.mark.parametrize(("package", "ask"), [
+    ("matplotlib", SWING.plot), ("matplotlib", SWING.animate), ("xarray", SWING.to_xarray),
+    ("scipy", lambda: simulate(SWING.chain, [1, 2], [0, 0], [0, 1], method="DOP853")),
+    ("heyoka", lambda: simulate(SWING.chain, [1, 2], [0, 0], [0, 1], method="heyoka"))])
+def test_a_package_that_is_not_installed_is_named(monkeypatch, package, ask):
     """With what to do; it is an ImportError too."""
     for name in [name for name in sys.modules if name.startswith(f"{package}.")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(NotInstalledError, match=f"needs {package}, which is not installed: pip install {package}"):
-        getattr(SWING, method)()
+        ask()
 
     assert issubclass(NotInstalledError, ImportError)
 
