@@ -36,20 +36,19 @@ from .constants import (
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .lanes import LANES, accelerate_lanes
 from .machine import has_numba, machine
-from .quantities import quantity, real_number, refuse_text
+from .quantities import quantity, real_number
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
+from .states import exact_states, float_states, float_time, is_plain, why_no_answer
 from .torques import exact_torques, joint_torques, joint_torques_of_many
 
-__all__ = ["PLAIN_TIMES", "CompiledChain", "float_state"]
+__all__ = ["CompiledChain"]
 
 MODELS = ("bobs", "rods")
 LONG = 10_000
 LONG_EVEN = 100  # even rods, from which on they are not asked for their doubt
-FLOAT64 = np.dtype(np.float64)
-PLAIN_TIMES = (float, int, np.float64)
 LIGHT = 1e-40  # of the largest mass: stands for no mass, and no float64 result can tell
 
 
@@ -220,21 +219,17 @@ class CompiledChain:
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """
-        if not _is_plain(theta, omega) or type(t) not in PLAIN_TIMES:
+        if not is_plain(t, theta, omega):
             arithmetic = arithmetic_of(t, theta, omega)
             if arithmetic is not None:
                 return self._exactly(arithmetic, t, theta, omega)
-            t = t if type(t) in PLAIN_TIMES else to_float(real_number(t, "t"))
-        shape = (self._count,)
-        if not (_is_plain(theta, omega) and theta.shape == shape == omega.shape and theta.flags.c_contiguous
-                and omega.flags.c_contiguous):
-            theta, omega = float_state(theta, "theta", self._count), float_state(omega, "omega", self._count)
-            _check_same(theta, omega)
+            t = float_time(t)
+        theta, omega = float_states(theta, omega, self._count)
         ax, ay = self._steady_pull if self._steady else map(float, self.pull(t))
         out = np.empty_like(theta)
         done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
         if not done:
-            raise QuantityError(_no_answer(t, theta, omega))
+            raise QuantityError(why_no_answer(t, theta, omega))
         if doubtful is not False and np.any(doubtful):
             n, doubtful = len(self), np.atleast_1d(doubtful)
             out.reshape(n, -1)[:, doubtful] = self._again(t, *(x.reshape(n, -1)[:, doubtful] for x in (theta, omega)))
@@ -332,10 +327,7 @@ class CompiledChain:
 
     def _exactly(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n,) or (n, chains) in another arithmetic."""
-        theta, omega = (np.asarray(x, dtype=object) for x in (theta, omega))
-        _check_same(theta, omega)
-        if len(theta) != len(self) or theta.ndim not in (1, 2):
-            raise SceneError(_wrong_shape("theta", theta.shape, len(self)))
+        theta, omega = exact_states(theta, omega, len(self))
         out = np.empty(theta.shape, dtype=object)
         for chain in np.ndindex(theta.shape[1:]):
             at = (slice(None), *chain)
@@ -373,8 +365,7 @@ class CompiledChain:
         Weights are those of gravity and of the constant part of the support's acceleration, and springs are counted.
         A constant of the motion where :attr:`conserves_energy`.  Shapes: (n,) gives a number, (n, any) shape (any,).
         """
-        theta, omega = (float_state(x, name, len(self)) for x, name in ((theta, "theta"), (omega, "omega")))
-        _check_same(theta, omega)
+        theta, omega = float_states(theta, omega, len(self))
         shape = (-1,) + (1,) * (theta.ndim - 1)
         m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)
         s, c = np.sin(theta), np.cos(theta)
@@ -401,41 +392,3 @@ class CompiledChain:
         ax, ay = (to_float(x) for x in self.support.constant)
         pull = max(abs(to_float(self.gravity) + ay), abs(ax))
         return float((self.rods[:, 0] * reach).sum() * pull)
-
-
-def _is_plain(theta: Any, omega: Any) -> bool:
-    """Whether both are float64 arrays, the common case, of which nothing else need be asked."""
-    return type(theta) is np.ndarray is type(omega) and theta.dtype is FLOAT64 is omega.dtype
-
-
-def float_state(values: Any, name: str, n: int) -> Any:
-    """Angles or rates as float64, shape (n,) or (n, chains); raises as :meth:`CompiledChain.acceleration` says."""
-    refuse_text(values, name)
-    try:
-        array = np.asarray(values)
-    except ValueError:  # rows of unequal length
-        array = np.asarray(values, dtype=object)
-    if array.dtype.kind not in "fiu":
-        array = np.array([to_float(real_number(x, name)) for x in array.flat]).reshape(array.shape)
-    if array.ndim not in (1, 2) or array.shape[0] != n:
-        raise SceneError(_wrong_shape(name, array.shape, n))
-    return np.ascontiguousarray(array, FLOAT64)
-
-
-def _wrong_shape(name: str, shape: tuple[int, ...], n: int) -> str:
-    return f"the chain has {n} rods, and {name} has shape {shape}: give shape ({n},), or ({n}, chains) for many chains."
-
-
-def _check_same(theta: Any, omega: Any) -> None:
-    if theta.shape != omega.shape:
-        raise SceneError(f"theta has shape {theta.shape} and omega {omega.shape}: give both the same shape.")
-
-
-def _no_answer(t: Any, theta: Any, omega: Any) -> str:
-    for name, values in (("t", np.asarray(t, dtype=float)), ("theta", theta), ("omega", omega)):
-        if not np.isfinite(values).all():
-            return f"{name} holds {values[~np.isfinite(values)].flat[0]}, which is not finite: give finite numbers."
-    return (f"theta'' is beyond float64 at t = {t}: rates up to {abs(omega).max():.3g} rad/s, or constants of the "
-            f"rods, overflow.  Change the units, or give mpmath numbers.")
-
-

@@ -20,12 +20,12 @@ import numpy as np
 from sympy import Dummy, Float, Matrix, Symbol, lambdify
 
 from .arithmetic import MPNumbers
-from .chain import PLAIN_TIMES, CompiledChain, float_state
-from .constants import substitution, to_float
+from .chain import CompiledChain
+from .constants import substitution
 from .equations import EquationsOfMotion
 from .errors import NotASceneError, QuantityError, SceneError
 from .machine import has_numba
-from .quantities import real_number
+from .states import float_state, float_time
 
 __all__ = ["CompiledEquations", "compile_equations"]
 
@@ -80,7 +80,7 @@ class CompiledEquations:
             time = MPNumbers(mpmath.mp).coerced(t)
             theta, omega = self._exact(theta, "theta"), self._exact(omega, "omega")
         else:
-            time = t if type(t) in PLAIN_TIMES else to_float(real_number(t, "t"))
+            time = float_time(t)
             theta, omega = self._floats(theta, "theta"), self._floats(omega, "omega")
         try:
             return self._solved(*self._function(time, *theta, *omega))
