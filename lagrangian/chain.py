@@ -30,13 +30,12 @@ from .constants import (
     joint_constants,
     products,
     rod_row,
-    to_float,
     to_floats,
 )
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .lanes import LANES, accelerate_lanes
 from .machine import has_numba, machine
-from .quantities import quantity, real_number
+from .quantities import quantity, real_number, to_float
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of

@@ -18,10 +18,10 @@ from sympy import Symbol
 
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
-from .quantities import quantity, real_number, refuse_text
+from .quantities import quantity, real_number, refuse_text, to_float
 
 __all__ = ["NAMES", "check_joints", "checked", "column", "joint_constants", "products", "rod_row", "substitution",
-           "to_float", "to_floats"]
+           "to_floats"]
 
 NAMES = ("mass", "length", "center", "gyration")
 
@@ -36,11 +36,6 @@ def products(a: Any, b: Any, c: Any, d: Any) -> Any:
     """``a b - c d`` for arrays, as if rounded once: the low halves of the products are kept."""
     (p, pe), (q, qe) = product(a, b), product(c, d)
     return (p - q) + (pe - qe)
-
-
-def to_float(exact: Any) -> float:
-    """An exact SymPy number, or any real number, as the nearest float."""
-    return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30))
 
 
 def to_floats(values: Any) -> Any:

@@ -23,8 +23,8 @@ from .chain import CompiledChain
 from .contexts import Context
 from .errors import QuantityError
 from .machine import rebound
+from .pace import Pace
 from .precision import working
-from .shaking import Pace
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 

@@ -17,8 +17,8 @@ from .angles import TURN, TURN_LOW, product
 from .chain import CompiledChain
 from .errors import QuantityError
 from .machine import machine
-from .quantities import quantity
-from .shaking import Pace, high_low
+from .pace import Pace
+from .quantities import high_low, quantity, to_float
 from .stepper import DONE, STUCK, advance, room, total
 
 __all__ = ["FloatRun", "integrate_floats", "split", "wrapped"]
@@ -132,7 +132,7 @@ def _shaking(chain: CompiledChain, clock: Any, order: int, moved: bool) -> tuple
     Where there are waves its steady part is one of them, of frequency 0, and the series is left to them.  A function
     of time is given a float, whose rounding it may amplify; ``moved``: by one unit in its last place.
     """
-    g, up = float(chain.gravity.evalf(30)), chain.up
+    g, up = to_float(chain.gravity), chain.up
     pull = np.zeros((2, order))
     if chain.support.function is not None:
         now = float(clock[0] + clock[1]) * (1.0 + moved * np.finfo(float).eps)

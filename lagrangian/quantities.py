@@ -1,7 +1,7 @@
 """What a user gives as an exact number or expression: finite, real, a scalar, and never text.
 
 A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is 3602879701896397/36028797018963968; write
-``Rational(1, 10)`` where the decimal is meant.
+``Rational(1, 10)`` where the decimal is meant.  :func:`to_float` and :func:`high_low` lead back to floats.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sympy import Expr, Float, I, Integer, Rational, nan, oo, zoo
 
 from .errors import NotAQuantityError, QuantityError, TextError
 
-__all__ = ["AnyMpf", "quantity", "real_number", "refuse_text"]
+__all__ = ["AnyMpf", "high_low", "quantity", "real_number", "refuse_text", "to_float"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
 
@@ -53,6 +53,18 @@ def real_number(value: Any, name: str) -> Any:
                             f"scene.compile({{symbol: number}})." if symbols else
                             f"{name} is {exact}, which is no number: give a number.")
     return exact
+
+
+def to_float(exact: Any) -> float:
+    """An exact SymPy number, or any real number, as the nearest float."""
+    return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30))
+
+
+def high_low(exact: Any) -> tuple[float, float]:
+    """An exact SymPy number as the nearest float and what that leaves."""
+    high = to_float(exact)
+    rest = exact - Rational(high)
+    return high, float(rest if rest.is_Rational else rest.evalf(20, maxn=1200))
 
 
 def _exact(value: Any, name: str) -> Any:

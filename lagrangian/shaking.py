@@ -21,16 +21,16 @@ from typing import Any, TypeVar
 
 import flint
 import numpy as np
-from sympy import Add, Expr, Integer, Mul, Rational, cos, cosh, expand, pi, sin, sinh, tanh
+from sympy import Add, Expr, Integer, Mul, cos, cosh, expand, pi, sin, sinh, tanh
 from sympy.core.function import AppliedUndef
 
 from .angles import revolved
 from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
-from .quantities import real_number, refuse_text
+from .quantities import high_low, real_number, refuse_text, to_float
 
-__all__ = ["Pace", "Shaking", "high_low", "shaking_of"]
+__all__ = ["Shaking", "shaking_of", "shaking_of_expressions"]
 
 Answer = TypeVar("Answer")
 NUMPYS = [name for name in FUNCTIONS if hasattr(np, name)]
@@ -72,12 +72,12 @@ class Shaking:
         The rows of waves are ``q``, turns in a second, ``q/(2 pi)``, as high and low half, ``cx, sx, cy, sy``: the
         phase is right at all times, 1e9 s too, where rounding q would take 1e-7 q of it.
         """
-        rows = [[_float(q), *high_low(q / (2 * pi)), *map(_float, sizes)] for q, *sizes in self.waves]
-        return np.array([_float(x) for x in self.constant]), np.array(rows).reshape(-1, 7)
+        rows = [[to_float(q), *high_low(q / (2 * pi)), *map(to_float, sizes)] for q, *sizes in self.waves]
+        return np.array([to_float(x) for x in self.constant]), np.array(rows).reshape(-1, 7)
 
     def at(self, t: Any, arithmetic: Arithmetic | None = None) -> tuple[Any, Any]:
         """The pair at a time, as floats or in ``arithmetic``.  Raises DriveError where it has no finite real value."""
-        number = arithmetic.number if arithmetic else _float
+        number = arithmetic.number if arithmetic else to_float
         if self.function is not None:
             if arithmetic is None:
                 return self._value(t, number)
@@ -97,7 +97,7 @@ class Shaking:
 
     def series(self, t: Any, order: int, arithmetic: Arithmetic | None = None) -> tuple[list[Any], list[Any]]:
         """Taylor coefficients 0, ..., order about ``t`` of both components.  Raises DriveError where there are none."""
-        number = arithmetic.number if arithmetic else _float
+        number = arithmetic.number if arithmetic else to_float
         if self.function is None:
             return self._waves(t, order, number, arithmetic.sines if arithmetic else lambda x: (np.sin(x), np.cos(x)))
         zero, one = number(Integer(0)), number(Integer(1))
@@ -139,7 +139,7 @@ class Shaking:
 
     def _value(self, t: Any, number: Any) -> tuple[Any, Any]:
         try:
-            time = t if number is _float else Jet([t], FUNCTIONS)
+            time = t if number is to_float else Jet([t], FUNCTIONS)
             found = self._pair(time, number)
             with np.errstate(all="ignore"):
                 motion = self.motion(time, number) if self.motion else ()
@@ -148,7 +148,7 @@ class Shaking:
         except DriveError:
             raise
         except (ArithmeticError, ValueError) as failure:
-            if isinstance(failure, ValueError) and number is not _float:
+            if isinstance(failure, ValueError) and number is not to_float:
                 raise  # from a function that takes floats alone
             wrong = [type(failure).__name__]
         if wrong:
@@ -168,38 +168,6 @@ class Shaking:
                 ratio = q / (j + 1)
                 a, b, d, e = b * ratio, -a * ratio, e * ratio, -d * ratio
         return x, y
-
-
-class Pace:
-    """Whether steps shrink before a time that they do not reach: a pole of the support's motion, say.
-
-    They do where a hundred in succession are 1e4 times shorter than the longest one, and a million times shorter than
-    the time that is left.
-    """
-
-    def __init__(self) -> None:
-        self.longest, self.short = 0.0, 0
-        self.before: float | None = None
-
-    def crawls(self, now: float, end: float) -> bool:
-        """To be asked after every step."""
-        if self.before is not None:
-            step = abs(now - self.before)
-            self.longest = max(self.longest, step)
-            self.short = self.short + 1 if 1e4 * step < self.longest and 1e6 * step < abs(end - now) else 0
-        self.before = now
-        return self.short > 100
-
-
-def _float(exact: Any) -> float:
-    return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30))
-
-
-def high_low(exact: Any) -> tuple[float, float]:
-    """An exact number as the nearest float and what that leaves."""
-    high = _float(exact)
-    rest = exact - Rational(high)
-    return high, float(rest if rest.is_Rational else rest.evalf(20, maxn=1200))
 
 
 def _first(x: Any) -> Any:

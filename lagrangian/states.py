@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .constants import to_float
 from .errors import SceneError
-from .quantities import real_number, refuse_text
+from .quantities import real_number, refuse_text, to_float
 
 __all__ = ["exact_states", "float_state", "float_states", "float_time", "is_plain", "why_no_answer"]
 

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from .chain import CompiledChain
-from .constants import to_float
 from .errors import NotAnEquilibriumError, QuantityError, SceneError
+from .quantities import to_float
 
 __all__ = ["swing"]
 
