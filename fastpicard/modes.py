@@ -30,24 +30,17 @@ from functools import lru_cache
 from math import factorial, gcd, lcm
 from typing import Any
 
-import sympy
 from flint import fmpq, fmpq_poly
 
 from fastpicard.ring import (
     ONE,
     Monomial,
     Polynomial,
-    add_term,
     fraction,
-    has_relations,
-    has_waves,
     is_zero,
     multiply,
     multiply_monomials,
-    power,
-    rational_value,
     reciprocal,
-    to_expression,
 )
 
 Linear = tuple[tuple[Monomial, Any], ...]  # sorted (monomial, int or Fraction) pairs
@@ -313,65 +306,6 @@ def _symbolic_recurrence(inverse: Polynomial, f: tuple[Any, ...]) -> tuple[tuple
                 row[r] += c * f[r + k]
         powers = multiply(powers, inverse)
     return tuple((m, tuple(row)) for m, row in collected.items())
-
-
-# -- equality ----------------------------------------------------------------
-
-
-def vanishes(modes: Modes) -> bool:
-    """Whether a series is zero as a function of time and parameters."""
-    monomials = {m for _, (frequency, phase), own in modes for m in (own, *dict(frequency), *dict(phase))}
-    return not support(modes) if has_relations(monomials) else not modes
-
-
-def support(modes: Modes) -> frozenset[tuple[Any, int]]:
-    """The ``(q, r)`` of the waves of rational frequency ``q``, or of other frequencies (None), at ``t**r``.
-
-    Waves that cancel by relations between parameters do not count, so equal series have equal support.
-    """
-    collected: dict[tuple[int, Angle, int], Polynomial] = {}
-    plain = _without_phases(modes) if has_waves(m for _, _, m in modes) else modes
-    for (kind, angle, monomial), f in _with_one_name(plain).items():
-        for r, c in enumerate(f.coeffs()):
-            if c:
-                add_term(collected.setdefault((kind, angle, r), {}), monomial, c)
-    return frozenset((_rate(angle[0]), r) for (_, angle, r), terms in collected.items() if not is_zero(terms))
-
-
-@lru_cache(maxsize=1 << 12)
-def _rate(frequency: Linear) -> tuple[int, int] | None:
-    value = rational_value(as_polynomial(frequency))
-    return None if value is None else (abs(int(value.p)), int(value.q))
-
-
-def _without_phases(modes: Modes) -> Modes:
-    """``cos(q t + phi) = cos phi cos qt - sin phi sin qt``, beside coefficients that are functions of ``phi`` too."""
-    result: Modes = {}
-    for (kind, (frequency, phase), monomial), f in modes.items():
-        turned, angle = orient((frequency, ()))
-        start = to_expression(as_polynomial(phase))
-        for other, g, value in ((kind, f, sympy.cos(start)), (1 - kind, -f if kind == COS else f, sympy.sin(start))):
-            for m, c in (power(value, 1) if value else {}).items():
-                factor, product_monomial = multiply_monomials(monomial, m)
-                add_reflected(result, other, turned, angle, product_monomial, g * (c * factor))
-    return result
-
-
-def _with_one_name(modes: Modes) -> Modes:
-    """The same series, where angles that are equal by relations between parameters have become one."""
-    names: dict[Angle, tuple[bool, Angle]] = {NO_ANGLE: (False, NO_ANGLE)}
-    result: Modes = {}
-    for (kind, angle, monomial), f in modes.items():
-        if angle not in names:
-            chosen = (found for _, found in list(names.values()))
-            equal = ((sign < 0, other) for other in chosen for sign in (1, -1) if _are_equal(angle, other, sign))
-            names[angle] = next(equal, (False, angle))
-        add_reflected(result, kind, *names[angle], monomial, f)
-    return result
-
-
-def _are_equal(left: Angle, right: Angle, sign: int) -> bool:
-    return all(not settled(_combine(x, y, -sign)) for x, y in zip(left, right, strict=True))
 
 
 # -- values ------------------------------------------------------------------

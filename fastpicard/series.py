@@ -14,6 +14,7 @@ from flint import fmpq_poly
 from sympy import Expr, Symbol
 
 from fastpicard import modes as algebra
+from fastpicard.equality import support, vanishes
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, evaluate, free_symbols
 from fastpicard.modes import Modes
@@ -104,7 +105,7 @@ class PoissonSeries:
 
     def __bool__(self) -> bool:
         """False for the series that is identically zero."""
-        return not algebra.vanishes(self._modes)
+        return not vanishes(self._modes)
 
     # -- ring operations -----------------------------------------------------
 
@@ -174,11 +175,11 @@ class PoissonSeries:
 
     def __eq__(self, other: object) -> bool:
         if isinstance(other, PoissonSeries):
-            return self._t == other._t and algebra.vanishes((self - other)._modes)
+            return self._t == other._t and vanishes((self - other)._modes)
         if isinstance(other, bool) or not isinstance(other, Expr | numbers.Number):
             return NotImplemented
         try:
-            return algebra.vanishes((self - other)._modes)
+            return vanishes((self - other)._modes)
         except (BadInputError, BadTypeError):  # not of the family
             return False
 
@@ -188,7 +189,7 @@ class PoissonSeries:
         Equal series have equal hashes.  An expression or a number equal to a series has a hash of its own.
         """
         if self._hash is None:
-            self._hash = hash((self._t, algebra.support(self._modes)))
+            self._hash = hash((self._t, support(self._modes)))
         return self._hash
 
     def __reduce__(self) -> tuple[Any, ...]:
