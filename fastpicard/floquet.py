@@ -15,7 +15,7 @@ from functools import cached_property
 from math import gcd
 from typing import Any
 
-from flint import arb, fmpq
+from flint import fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, ImmutableMatrix, Symbol, pi
 
@@ -24,11 +24,12 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Point, Values, ball, check_digits, exact_number, to_complex, upper_float
-from fastpicard.harmonics import Harmonics, harmonics, is_box, numbers_in
+from fastpicard.evaluate import Values, ball, check_digits, exact_number, to_complex, upper_float
+from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
 from fastpicard.modes import Modes
+from fastpicard.parameters import BOUND_BITS, is_box, numbers_in, problem_at
 from fastpicard.period import check_period, whole_turns
 from fastpicard.picard import check_order
 from fastpicard.precision import working
@@ -39,13 +40,6 @@ from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_mult
 from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
-
-_BOUND_BITS = 8192  # the precision of P and T where a bound is asked for
-
-
-def _is_proper(P: Harmonics, period: Any) -> bool:
-    """Whether ``P`` and the period are finite, and the period is positive, whatever the balls stand for."""
-    return P.is_finite and bool(period.is_finite()) and bool(period > 0)
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
@@ -248,7 +242,7 @@ class FloquetMatrix:
         if not ball(limit) > 0:
             raise BadInputError(f"tol must be positive, but it is {tol}.  Use 1e-12, say.")
         exact = first.numbers(values)
-        with working(_BOUND_BITS):
+        with working(BOUND_BITS):
             return first.to_order(smallest_order(*first.at(exact), ball(limit)))
 
     def numbers(self, values: Values | None) -> dict[Any, Any]:
@@ -263,21 +257,7 @@ class FloquetMatrix:
         BadInputError
             if ``P`` or ``T`` is not finite there, or ``T`` not positive; in a box, everywhere.
         """
-        found = self._at(exact)
-        if not _is_proper(*found):
-            with working(_BOUND_BITS):
-                found = self._at(exact)
-        if _is_proper(*found):
-            return found
-        where = ", ".join(f"{s} = {v}" for s, v in sorted(exact.items(), key=str)) or "no parameters"
-        if not found[0].is_finite or not found[1].is_finite():
-            raise BadInputError(f"P and its period must be finite and real, but one of them is not at {where}: a pole, "
-                                "or a root of a negative number.  Keep away from there.")
-        raise BadInputError(f"the period must be positive, but {self.period} is {found[1].str(5)} at {where}.  "
-                            "Choose the sign of the parameters so that it is.")
-
-    def _at(self, exact: Mapping[Any, Any]) -> tuple[Harmonics, Any]:
-        return harmonics(self.P, exact), Point(arb(0), exact).polynomial(self.length)
+        return problem_at(self.P, self.period, self.length, exact)
 
     def remainder(self, values: Values | None = None, entrywise: bool = False) -> Any:
         """A rigorous upper bound of ``|Phi(T) - Phi_n(T)|``, the iterate's distance from the truth.
@@ -309,7 +289,7 @@ class FloquetMatrix:
         True
         """
         exact = self.numbers(values)
-        with working(_BOUND_BITS):
+        with working(BOUND_BITS):
             bound = a_posteriori(*self.at(exact), self.n)
             if entrywise:
                 return number_matrix([upper_float(x) for x in bound.entries()], self.shape, None)

@@ -11,18 +11,16 @@ bound every majorant of the package.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from flint import arb, arb_mat
 
-from fastpicard.errors import BadInputError
-from fastpicard.evaluate import Point, Values, ball, exact_number, exact_values, free_symbols
+from fastpicard.evaluate import Point
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS
-from fastpicard.precision import working
 
 Place = tuple[int, int]
 Wave = tuple[Any, Any, Any]  # q, the cosine's amplitude, the sine's: balls
@@ -115,7 +113,7 @@ def _parities(waves: list[Wave]) -> tuple[bool, bool]:
 
 
 def harmonics(P: SeriesMatrix, values: Mapping[Any, Any]) -> Harmonics:
-    """``P`` at exact parameter values (see :func:`numbers_in`), in balls of the working precision."""
+    """``P`` at exact parameter values (see :mod:`fastpicard.parameters`), in balls of the working precision."""
     point = Point(arb(0), values)
     waves: dict[Place, list[Wave]] = {}
     for i, row in enumerate(P.rows):
@@ -139,38 +137,3 @@ def _turned(point: Point, angle: Any, amplitude: Any) -> tuple[Any, Any]:
         return amplitude, arb(0)
     phase = point.linear(angle[1])
     return amplitude * phase.cos(), amplitude * phase.sin()
-
-
-# -- values of the parameters ------------------------------------------------
-
-
-def numbers_in(P: SeriesMatrix, values: Values | None, others: Iterable[Any] = ()) -> dict[Any, Any]:
-    """The values of the parameters of ``P`` and of other symbols: exact numbers, or for ``(lo, hi)`` a ball.
-
-    Raises
-    ------
-    MissingParameterError
-        if a parameter has no value.
-    BadInputError
-        if ``lo > hi``.
-    """
-    needed = set(others).union(*(free_symbols(modes) for row in P.rows for modes in row))
-    return exact_values(values, needed, P.t, _number_or_interval)
-
-
-def _number_or_interval(value: Any, what: str) -> Any:
-    if not isinstance(value, tuple):
-        return exact_number(value, what)
-    if len(value) != 2:
-        raise BadInputError(f"an interval is a pair (lo, hi), but {what} is {value!r}.  Give two numbers.")
-    with working(256):
-        lo, hi = (ball(exact_number(end, f"an end of {what}")) for end in value)
-        if lo > hi:
-            raise BadInputError(f"an interval is a pair (lo, hi) with lo <= hi, but {what} is {value!r}.  "
-                                "Exchange the two.")
-        return lo.union(hi)
-
-
-def is_box(values: Mapping[Any, Any]) -> bool:
-    """Whether a value is a ball with a radius, that is more than one point."""
-    return any(isinstance(value, arb) and not value.is_exact() for value in values.values())
