@@ -1,6 +1,6 @@
 """Chains of rods against SymPy with SciPy, PyDy, heyoka, MuJoCo, Pinocchio and mpmath, in one run, as ratios.
 
-    python benchmarks/chains.py [rhs] [many] [motion] [digits [--until=2.8]] [start]
+    python benchmarks/chains.py [rhs] [many] [motion] [digits [--until=2.8]] [modes] [start]
 
 A peer that is not installed is left out with a sentence (pip install heyoka mujoco pin pydy cython).  Every time is
 the least of several repeats on one core; the machine decides the times, the ratios are what matters.  Every peer's
@@ -26,7 +26,7 @@ import mpmath
 import numpy as np
 from sympy import Integer, Rational, symbols
 
-from lagrangian import CompiledChain, Rod, Scene, compile_equations, euler_lagrange, simulate
+from lagrangian import CompiledChain, Rod, Scene, compile_equations, euler_lagrange, linearize, normal_modes, simulate
 from lagrangian.digits import Steps, integrate_digits
 from lagrangian.doubled import DoubledSteps
 from lagrangian.floats import FINEST, ORDER, integrate_floats
@@ -242,6 +242,8 @@ def digits() -> None:
         spent = time.process_time() - before
         apart = mpmath.nstr(max(abs(x - y) for x, y in zip(mine, other)), 2)
     print(f"ours {ours:.3g} s, mpmath.odefun {mpmath.__version__} {spent:.4g} s: {spent / ours:.4g}x; apart by {apart}")
+    error = simulate(swinging(2), [2] * 2, [0] * 2, [0, end], digits=50).error[-1]
+    print(f"simulate(..., digits=50), which runs it again, estimates its error as {float(error):.0e}")
     print("\n28 digits from 2 rad, one run, ms of processor time: double-double, the same steps in balls, how apart")
     for n, end in ((2, Integer(5)), (10, Integer(1)), (100, Rational(1, 8))):
         motion = swinging(n), [Integer(2)] * n, [Integer(0)] * n, [Integer(0), end], 28
@@ -254,6 +256,36 @@ def digits() -> None:
         mine, theirs = 1e3 * (between - started), 1e3 * (time.process_time() - between)
         apart = mpmath.nstr(abs(run.theta - other).max(), 2)
         print(f"{n:>4} bobs, {run.steps} steps: {mine:.4g}, {theirs:.5g}: {theirs / mine:.3g}x; apart by {apart}")
+
+
+def modes() -> None:
+    print("\nNormal modes of N rods, 15 digits, proved: ms of processor time; how many times that mpmath.eigsy and "
+          "exact mu take")
+    for n in (5, 10, 20, 30, 50):
+        lin = linearize(euler_lagrange(Scene([Rod.uniform(1, 1)] * n, gravity=1)))
+        found, ours = timed(lambda: normal_modes(lin, digits=15))
+        exact, longer = timed(lambda: normal_modes(lin), 1)  # SymPy keeps the roots of a polynomial
+        with mpmath.workdps(20):
+            A, B = (mpmath.matrix(n, n) + mpmath.matrix(matrix.tolist()) for matrix in (found.A, found.B))
+
+            def by_mpmath() -> Any:
+                inverse = mpmath.cholesky(A) ** -1
+                return mpmath.eigsy(inverse * B * inverse.T)[0]
+            theirs, spent = timed(by_mpmath)
+            scale = max(map(abs, theirs))
+            assert max(abs(x - mpmath.mpf(y._mpf_)) for x, y in zip(theirs, found.mu)) < 1e-14 * scale
+            assert max(abs(x - mpmath.mpf(y.evalf(20)._mpf_)) for x, y in zip(theirs, exact.mu)) < 1e-14 * scale
+        print(f"N = {n}: {1e3 * ours:.3g}; {spent / ours:.2g}x; {longer / ours:.2g}x")
+
+
+def timed(function: Callable[[], Any], calls: int = 3) -> tuple[Any, float]:
+    """What it gives, and the least processor time of a few calls."""
+    best = float("inf")
+    for _ in range(calls):
+        before = time.process_time()
+        found = function()
+        best = min(best, time.process_time() - before)
+    return found, best
 
 
 START = """
@@ -283,7 +315,8 @@ def start() -> None:
             print(f"{label:>15}: {done.stdout.strip()}")
 
 
-PARTS = {"rhs": right_hand_sides, "many": many_chains, "motion": motions, "digits": digits, "start": start}
+PARTS = {"rhs": right_hand_sides, "many": many_chains, "motion": motions, "digits": digits, "modes": modes,
+         "start": start}
 
 if __name__ == "__main__":
     for name in [x for x in sys.argv[1:] if not x.startswith("--")] or PARTS:

@@ -78,10 +78,10 @@ def mathieu_a_enclosure(r: int, q: Any, digits: int = 15) -> Any:
     If q is itself a ball of radius s, the result contains ``a_r`` of every point of it and is wider by ``2
     s``.  Arguments and errors are those of `mathieu_a`.
 
-    Speed and accuracy: one call, measured on one core of a small server, for 15, 30, 100 and 1000 digits:
-    at (r, q) = (0, 5) 0.1, 0.2, 0.3 and 4 ms; (3, 1000) 0.2, 0.3, 0.7 and 7 ms; (0, 1e6) 0.6, 1.0, 3 and 30 ms;
-    (50, 1e6) 1.0, 1.6, 4 and 30 ms; (300, 1e6) 2.1, 2.7, 6 and 38 ms.  Time grows as the number of rows, about
-    ``max(r/2, 10 |q|**(1/4))`` plus a third of the digits.
+    Speed and accuracy: one call for 15, 30, 100 and 1000 digits, measured on one core of a small server by
+    ``benchmarks/enclosure.py``: at (r, q) = (0, 5) 0.1, 0.2, 0.3 and 4 ms; (3, 1000) 0.2, 0.3, 0.7 and 7 ms;
+    (0, 1e6) 0.6, 0.9, 2 and 27 ms; (50, 1e6) 1.0, 1.4, 3 and 28 ms; (300, 1e6) 2.3, 3.0, 5 and 35 ms.  Time grows as
+    the number of rows, about ``max(r/2, 10 |q|**(1/4))`` plus a third of the digits.
 
     >>> mathieu_a_enclosure(0, 25, digits=12).contains(mathieu_a_enclosure(0, 25, digits=40))
     True

@@ -140,8 +140,9 @@ def normal_modes(lin: LinearEquations, digits: int | None = None) -> NormalModes
 
     Speed and accuracy: with ``digits=None`` mu is exact (rationals, radicals, or roots of irreducible polynomials
     that SymPy isolates and refines on demand), and U for N > 2 has 30 digits.  ``digits=d`` computes both as numbers,
-    whose d digits are proved in balls unless some mu are equal (:mod:`lagrangian.eigen`); it is the faster way for N
-    above about 20: a second for N = 50.
+    whose d digits are proved in balls unless some mu are equal (:mod:`lagrangian.eigen`); it is the faster way, a
+    second for N = 50, where ``mpmath.eigsy`` takes 5 times as long and exact mu 12 times (``benchmarks/chains.py
+    modes``).
 
     >>> from sympy import symbols
     >>> from lagrangian import Rod, Scene, euler_lagrange, linearize
