@@ -20,6 +20,7 @@ from fastpicard.errors import (
     FastPicardError,
     MissingParameterError,
     NotInFamilyError,
+    NotInstalledError,
     NotPeriodicError,
     ShapeError,
 )
@@ -48,6 +49,7 @@ __all__ = [
     "MissingParameterError",
     "Multiplier",
     "NotInFamilyError",
+    "NotInstalledError",
     "NotPeriodicError",
     "PicardIterate",
     "PoissonSeries",

@@ -135,7 +135,13 @@ class CertifiedChart:
 
     def plot(self, ax: Any = None, xlabel: str | None = None, ylabel: str | None = None,
              title: str | None = None) -> Any:
-        """The chart as a matplotlib picture, undecided cells black; returns the axes.  Labels may carry units."""
+        """The chart as a matplotlib picture, undecided cells black; returns the axes.  Labels may carry units.
+
+        Raises
+        ------
+        NotInstalledError
+            without matplotlib.
+        """
         return plotting.certified(self, ax, xlabel, ylabel, title)
 
     def __repr__(self) -> str:

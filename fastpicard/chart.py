@@ -22,7 +22,6 @@ from typing import Any
 
 from sympy import Symbol
 
-from fastpicard import sweeps
 from fastpicard.charted import Charted, Member, read_chart
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError
@@ -32,6 +31,7 @@ from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.local import BITS, convex, span_at
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
+from fastpicard.sweeps import chart_type
 from fastpicard.vectorise import Evaluator
 
 Array = Any
@@ -60,6 +60,8 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     ------
     BadInputError, BadTypeError, MissingParameterError
         if the axes, points, modes or fixed values are not as described.
+    NotInstalledError
+        without xarray.
 
     Notes
     -----
@@ -76,7 +78,7 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     """
     problem = read_chart(F, x, y, fixed, modes)
     across, up = _counts(points)
-    np = numpy()
+    np, Chart = numpy(), chart_type()
     first, second = problem.axes
     xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
@@ -101,12 +103,12 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])
     verdict.reshape(-1)[open_[convex_there]] = -1
     dims = (str(second.symbol), str(first.symbol))
-    return sweeps.dataset(
+    return Chart(
         {"trace": (dims, trace, {"long_name": "trace of the Floquet matrix"}),
          "margin": (dims, margin, {"long_name": "distance from the boundary: positive where stable"}),
          "error": (dims, error, {"long_name": "bound of the margin's error"}),
          "verdict": (dims, verdict, {"long_name": "1 stable, -1 unstable, 0 undecided"})},
-        {dims[0]: (ys, {}), dims[1]: (xs, {})},
+        {dims[0]: ys, dims[1]: xs},
         {"order": problem.F.n, "period": str(problem.F.period), "modes": len(problem.members),
          "error_is": "bound" if scalar else "estimate", "equation": _shown(problem)})
 

@@ -32,3 +32,7 @@ class ShapeError(BadInputError):
 
 class MissingParameterError(BadInputError):
     """A number was asked for while a parameter has no value."""
+
+
+class NotInstalledError(FastPicardError, ImportError):
+    """The work asked for is done by a package that is not installed."""

@@ -5,21 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from fastpicard.evaluate import numpy
+from fastpicard.optional import optional
 
 STABLE, UNSTABLE, UNDECIDED, LINE = "#8fbf8f", "#f4f1ea", "#000000", "#3a62d0"
 
 
-def pyplot() -> Any:
-    """matplotlib.pyplot, imported when the first picture is drawn."""
-    import matplotlib.pyplot as module
-
-    return module
+def _matplotlib(part: str) -> Any:
+    """A module of matplotlib, imported when the first picture is drawn."""
+    return optional(f"matplotlib.{part}", "a picture of a chart")
 
 
 def _axes(ax: Any) -> Any:
     if ax is not None:
         return ax
-    _, ax = pyplot().subplots(figsize=(8, 5.5), constrained_layout=True)
+    _, ax = _matplotlib("pyplot").subplots(figsize=(8, 5.5), constrained_layout=True)
     return ax
 
 
@@ -31,9 +30,7 @@ def _finish(ax: Any, x: Any, y: Any, xlabel: str | None, ylabel: str | None, tit
 
 
 def _key(ax: Any, entries: list[tuple[str, str]], line: str | None = None) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
+    Line2D, Patch = _matplotlib("lines").Line2D, _matplotlib("patches").Patch
     handles: list[Any] = [Patch(facecolor=colour, edgecolor="0.5", label=label) for colour, label in entries]
     if line:
         handles.append(Line2D([], [], color=LINE, linewidth=1.2, label=line))
@@ -70,9 +67,7 @@ def _open(chart: Any, codes: Any, x: Any, y: Any) -> Any:
 
 
 def _rgb(colour: str) -> tuple[float, ...]:
-    from matplotlib.colors import to_rgb
-
-    return tuple(to_rgb(colour))
+    return tuple(_matplotlib("colors").to_rgb(colour))
 
 
 def raster(chart: Any, width: int, height: int) -> Any:

@@ -5,29 +5,21 @@ from __future__ import annotations
 from typing import Any
 
 from fastpicard import plotting
+from fastpicard.optional import optional
 
 
-def dataset(values: dict[str, tuple[Any, Any, dict[str, str]]], coordinates: dict[str, tuple[Any, dict[str, str]]],
-            attributes: dict[str, Any]) -> Any:
-    """An ``xarray.Dataset`` with ``.plot()``.
+def chart_type() -> Any:
+    """A class of ``xarray.Dataset`` whose ``plot()`` draws stability; raises NotInstalledError without xarray."""
+    Dataset: Any = optional("xarray", "a chart of points").Dataset
 
-    Parameters
-    ----------
-    values : {name: (dimensions, array, attributes)}
-    coordinates : {name: (array, attributes)}
-    attributes : provenance
-    """
-    import xarray
-
-    class Chart(xarray.Dataset):  # type: ignore[no-untyped-call]
+    class Chart(Dataset):  # type: ignore[misc]
         """A chart: a Dataset whose ``plot()`` draws stability."""
 
         __slots__ = ()
 
-        def plot(self, ax: Any = None, xlabel: str | None = None, ylabel: str | None = None,  # type: ignore[override]
+        def plot(self, ax: Any = None, xlabel: str | None = None, ylabel: str | None = None,
                  title: str | None = None) -> Any:
-            """The chart as a matplotlib picture; returns the axes."""
+            """The chart as a matplotlib picture; returns the axes.  Raises NotInstalledError without matplotlib."""
             return plotting.sampled(self, ax, xlabel, ylabel, title)
 
-    return Chart({name: (dims, array, notes) for name, (dims, array, notes) in values.items()},
-                 {name: (name, array, notes) for name, (array, notes) in coordinates.items()}, attributes)
+    return Chart

@@ -4,8 +4,11 @@ import subprocess
 import sys
 
 import pytest
+from sympy import Matrix, cos
+from sympy.abc import a, b, t
 
 import fastpicard
+from fastpicard import FloquetMatrix, NotInstalledError, certify, chart
 
 
 @pytest.mark.parametrize("heavy", ["scipy", "matplotlib", "pandas", "dask", "numba", "xarray"])
@@ -35,3 +38,19 @@ def test_every_promised_name_exists_and_says_what_it_is():
         "PoissonSeries",
     ):
         assert name in fastpicard.__all__
+
+
+@pytest.mark.parametrize("package, ask", [
+    ("xarray", lambda F: lambda: chart(F, (a, -1, 2), (b, 0, 2), points=(2, 2))),
+    ("matplotlib", lambda F: chart(F, (a, -1, 2), (b, 0, 2), points=(2, 2)).plot),
+    ("matplotlib", lambda F: certify(F, (a, 0.1, 0.2), (b, 0, 0.01), undecided=0.5, seconds=60).plot)])
+def test_a_package_that_is_not_installed_is_named(monkeypatch, package, ask):
+    """With what to do; it is an ImportError too."""
+    question = ask(FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 8))
+    for name in [name for name in sys.modules if name.startswith(f"{package}.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(NotInstalledError, match=f"needs {package}, which is not installed: pip install {package}"):
+        question()
+
+    assert issubclass(NotInstalledError, ImportError)
