@@ -14,6 +14,7 @@ import time
 
 import numpy as np
 from sympy import CRootOf, Matrix, Poly, Rational, cos, eye, sqrt, symbols, zeros
+from timing import least
 
 from fastpicard import FloquetMatrix, certify, chart, tubes
 from fastpicard.collapsed import Collapsed
@@ -61,16 +62,6 @@ def points(count: int) -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(1)
     hh, vv = rng.uniform(0, 0.5, count), rng.uniform(2, 100, count)
     return -1.5 / vv**2, 1.5 * hh
-
-
-def least(function: object, repeat: int = 3) -> float:
-    """The least processor time of some runs."""
-    times = []
-    for _ in range(repeat):
-        start = time.process_time()
-        function()
-        times.append(time.process_time() - start)
-    return min(times)
 
 
 def ours() -> float:

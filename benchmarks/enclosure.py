@@ -9,6 +9,7 @@ import time
 
 import mpmath
 from sympy import Matrix, Rational, cos, symbols
+from timing import least
 
 from fastpicard import FloquetMatrix, tabulate
 from fastpicard.mathieu import mathieu_a_enclosure
@@ -17,14 +18,9 @@ a, b, t = symbols("a b t")
 F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 20)
 
 
-def least(function, *arguments, repeats=3):
-    """The least processor time of a few calls, in ms."""
-    best = float("inf")
-    for _ in range(repeats):
-        start = time.process_time()
-        function(*arguments)
-        best = min(best, 1e3 * (time.process_time() - start))
-    return best
+def milliseconds(function, *arguments, repeats=3):
+    """The least processor time of a few calls."""
+    return 1e3 * least(lambda: function(*arguments), repeats)
 
 
 def points(count, sizes, seed=1):
@@ -51,24 +47,24 @@ def enclose(places, digits):
 
 def main():
     box = points(30, (Rational(5, 2), Rational(3, 2)))
-    ours = least(enclose, box, 30) / len(box)
-    theirs = least(by_odefun, box[0], repeats=1)
+    ours = milliseconds(enclose, box, 30) / len(box)
+    theirs = milliseconds(by_odefun, box[0], repeats=1)
     print(f"enclosure, 30 digits, |a| <= 2.5, |b| <= 1.5: {ours:.2f} ms a point; "
           f"mpmath.odefun, no bound: {theirs:.0f} ms, {theirs / ours:.0f} times as long")
     start = time.process_time()
     table = tabulate(F, {a: (Rational(-5, 2), Rational(5, 2)), b: (Rational(-3, 2), Rational(3, 2))}, 30)
     build = time.process_time() - start
-    looked_up = least(lambda: [table.enclosure(v, 30) for v in box]) / len(box)
+    looked_up = milliseconds(lambda: [table.enclosure(v, 30) for v in box]) / len(box)
     print(f"the same from a table: {looked_up:.2f} ms a point, {ours / looked_up:.1f} times as fast, after "
           f"{build:.1f} s once, as long as {1e3 * build / (ours - looked_up):.0f} points take")
     for digits in (15, 100, 1000):
         some = box[:5 if digits < 1000 else 1]
-        print(f"enclosure, {digits} digits: {least(enclose, some, digits) / len(some):.1f} ms")
+        print(f"enclosure, {digits} digits: {milliseconds(enclose, some, digits) / len(some):.1f} ms")
     for values in ({a: 4000, b: 1000}, {a: -4000, b: 10}, {a: 1, b: 1000}):
-        print(f"enclosure, 30 digits at {values}: {least(enclose, [values], 30):.0f} ms")
-    print(f"verdict: {least(lambda: [F.verdict(v) for v in box]) / len(box):.2f} ms a point")
-    print(f"multipliers, 15 digits: {least(lambda: [F.multipliers(v) for v in box]) / len(box):.2f} ms a point")
-    print(f"remainder at n = 20: {least(lambda: [F.remainder(v) for v in box[:5]]) / 5:.0f} ms a point")
+        print(f"enclosure, 30 digits at {values}: {milliseconds(enclose, [values], 30):.0f} ms")
+    print(f"verdict: {milliseconds(lambda: [F.verdict(v) for v in box]) / len(box):.2f} ms a point")
+    print(f"multipliers, 15 digits: {milliseconds(lambda: [F.multipliers(v) for v in box]) / len(box):.2f} ms a point")
+    print(f"remainder at n = 20: {milliseconds(lambda: [F.remainder(v) for v in box[:5]]) / 5:.0f} ms a point")
     characteristic_numbers()
 
 
@@ -77,7 +73,7 @@ def characteristic_numbers():
     columns = (15, 30, 100, 1000)
     print(f"mathieu_a_enclosure(r, q, digits), ms, for digits = {', '.join(map(str, columns))}")
     for r, q in ((0, 5), (3, 1000), (0, 10**6), (50, 10**6), (300, 10**6)):
-        cells = [least(mathieu_a_enclosure, r, q, digits, repeats=20) for digits in columns]
+        cells = [milliseconds(mathieu_a_enclosure, r, q, digits, repeats=20) for digits in columns]
         print(f"  r = {r}, q = {q}: {', '.join(f'{cell:.2g}' for cell in cells)}")
 
 

@@ -10,8 +10,6 @@ Every pair is run alternately, several times, and the smallest time of each coun
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 from sympy import Matrix, cos, symbols
@@ -21,23 +19,12 @@ from fastpicard import FloquetMatrix, FundamentalMatrix
 sys.path.insert(0, str(Path(__file__).parent))
 import peer
 import yardstick
+from timing import compare
 
 t, a, b = symbols("t a b")
 DRIVE = a + b * cos(t)
 MATHIEU = Matrix([[0, 1], [-DRIVE, 0]])
 DOUBLE_ROD = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-18 * DRIVE, 9 * DRIVE, 0, 0], [27 * DRIVE, -24 * DRIVE, 0, 0]])
-
-
-def seconds(work: Callable[[], object]) -> float:
-    start = time.process_time()
-    work()
-    return time.process_time() - start
-
-
-def compare(*works: Callable[[], object], repeat: int) -> list[float]:
-    """The smallest time of each, run alternately."""
-    runs = [[seconds(work) for work in works] for _ in range(repeat)]
-    return [min(column) for column in zip(*runs)]
 
 
 def against_yardstick(orders: list[int]) -> None:
@@ -54,7 +41,7 @@ def row(name: str, n: int, P: Matrix, plain: dict[tuple[int, int], list[object]]
     base, phi, trace = compare(lambda: yardstick.fundamental_matrix(plain, size, n),
                                lambda: FundamentalMatrix(P, t, n),
                                lambda: FloquetMatrix(P, t, n).trace(),
-                               repeat=12 if n < 30 else 4 if n < 100 else 1)
+                               repeats=12 if n < 30 else 4 if n < 100 else 1)
     print(f"{name:12} {n:4} {base:12.4f} {phi / base:7.2f} {trace / base:21.2f}", flush=True)
 
 
@@ -67,7 +54,7 @@ def against_peer(orders: list[int]) -> None:
 
 def peer_row(n: int) -> None:
     theirs, ours = compare(lambda: peer.fundamental_matrix(peer.MATHIEU, 2, n),
-                           lambda: FundamentalMatrix(MATHIEU, t, n).series, repeat=12 if n < 30 else 4)
+                           lambda: FundamentalMatrix(MATHIEU, t, n).series, repeats=12 if n < 30 else 4)
     count = peer.terms(peer.fundamental_matrix(peer.MATHIEU, 2, n))
     print(f"{n:4} {count:8} {theirs:9.4f} {theirs / ours:7.2f}", flush=True)
 

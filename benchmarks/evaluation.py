@@ -23,6 +23,7 @@ import mpmath
 import numpy as np
 import sympy
 from sympy import Matrix, cos, symbols
+from timing import least
 
 from fastpicard import FloquetMatrix
 from fastpicard.collapsed import Collapsed
@@ -32,16 +33,6 @@ from fastpicard.vectorise import Evaluator
 a, b, t = symbols("a b t")
 MATHIEU = Matrix([[0, 1], [-a - b * cos(t), 0]])
 NAMES = ("float64", "pairs", "balls")
-
-
-def least(work: Callable[[], Any], repeats: int) -> float:
-    """The least processor time of several."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times)
 
 
 def plain_horner(collapsed: Collapsed) -> Callable[..., Any]:

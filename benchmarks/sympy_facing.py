@@ -6,20 +6,13 @@
 from __future__ import annotations
 
 import random
-import time
-from collections.abc import Callable
 
 from sympy import Add, Expr, Matrix, Mul, Rational, cos, integrate, sin, symbols
+from timing import least
 
 from fastpicard import FundamentalMatrix, new_integrate
 
 t, a, b = symbols("t a b")
-
-
-def seconds(work: Callable[[], object]) -> float:
-    start = time.process_time()
-    work()
-    return time.process_time() - start
 
 
 def thousand_terms() -> Expr:
@@ -35,15 +28,15 @@ def thousand_terms() -> Expr:
 def main() -> None:
     new_integrate(t * cos(t), t)
     expression = thousand_terms()
-    print(f"new_integrate of {len(expression.args)} terms: {seconds(lambda: new_integrate(expression, t)):.3f} s")
+    print(f"new_integrate of {len(expression.args)} terms: {least(lambda: new_integrate(expression, t), 1):.3f} s")
     one = t**10 * cos(t)
-    ours = min(seconds(lambda: new_integrate(one, t)) for _ in range(5))
-    theirs = seconds(lambda: integrate(one, t))
+    ours = least(lambda: new_integrate(one, t), 5)
+    theirs = least(lambda: integrate(one, t), 1)
     print(f"t**10 cos t: {1000 * ours:.2f} ms, SymPy's integrate {theirs:.1f} s, {theirs / ours:.0f} times as long")
     entry = FundamentalMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 24)[0, 0]
     written = entry.as_expr()
-    ours = min(seconds(entry.as_expr) for _ in range(3))
-    theirs = seconds(lambda: Add(*(Mul(*term.args) for term in written.args)))
+    ours = least(entry.as_expr)
+    theirs = least(lambda: Add(*(Mul(*term.args) for term in written.args)), 1)
     print(f"conversion of {len(written.args)} terms: {ours:.3f} s, "
           f"rebuilding them by Add and Mul {theirs / ours:.1f} times as long")
 
