@@ -1,25 +1,21 @@
 r"""The drive in the phase ``tau = omega0 t``: trigonometric polynomials, the period, and the scales h and v.
 
-A coefficient of the linear equations is a finite sum of ``c cos(q tau) + s sin(q tau)`` with rational q, kept as
-``{q: (c, s)}``; products of waves are beats, ``2 cos x cos y = cos(x + y) + cos(x - y)``.  All of it repeats
-after ``2 pi / gcd(q)``.  For equal rods ``h = epsilon/l`` and ``v = omega0 sqrt(l/g)`` ([Neves] (16), (17))
-leave no other parameter: ``g/(l omega0**2) = 1/v**2``.
+A coefficient of the linear equations is a finite sum of ``c cos(q tau) + s sin(q tau)`` with rational q
+(:mod:`lagrangian.waves`).  All of it repeats after ``2 pi / gcd(q)``.  For equal rods ``h = epsilon/l`` and
+``v = omega0 sqrt(l/g)`` ([Neves] (16), (17)) leave no other parameter: ``g/(l omega0**2) = 1/v**2``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any
 
 from sympy import (
-    Add,
     Derivative,
     ImmutableDenseMatrix,
     Integer,
-    Mul,
-    Pow,
     Rational,
     Symbol,
     cos,
@@ -38,6 +34,7 @@ from .errors import (
     QuantityError,
 )
 from .quantities import quantity
+from .waves import NoWave, Waves, waves_of
 
 
 def frequency(omega0: Any, t: Any) -> Any:
@@ -48,66 +45,42 @@ def frequency(omega0: Any, t: Any) -> Any:
     return omega0
 
 
-# --- trigonometric polynomials in tau: {q: (coefficient of cos q tau, coefficient of sin q tau)}, q >= 0 ------
+# --- modes: sums of waves in tau, {q: (coefficient of cos q tau, coefficient of sin q tau)}, q >= 0 ------------
 
 
-def modes_of(expression: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
-    """``expression(t)`` at ``t = tau/omega0`` as modes ``{q: (c, s)}``, the sum of ``c cos q tau + s sin q tau``.
+def modes_of(expression: Any, t: Any, omega0: Any) -> Waves:
+    """``expression(t)`` at ``t = tau/omega0`` as a sum of waves in tau, with rational frequencies.
 
-    Raises NotPeriodicError unless it is a finite sum with rational ``q``.
+    Raises NotPeriodicError unless it is one.
     """
-    if t not in expression.free_symbols:
-        return {Integer(0): (expression, Integer(0))}
-    if isinstance(expression, Add):
-        return _sum(modes_of(term, t, omega0) for term in expression.args)
-    if isinstance(expression, Mul):
-        return reduce(_product, (modes_of(factor, t, omega0) for factor in expression.args))
-    if isinstance(expression, Pow) and expression.base != t and expression.exp.is_Integer and expression.exp > 0:
-        return reduce(_product, [modes_of(expression.base, t, omega0)] * int(expression.exp))
-    if isinstance(expression, (cos, sin)):
-        return _single(expression, t, omega0)
-    remedy = (f"replace {expression} by the motion meant, such as epsilon*cos(omega0*{t})"
-              if expression.atoms(AppliedUndef, Derivative) else "write the drive as a sum of cosines and sines")
-    raise NotPeriodicError(f"{expression} is not a trigonometric polynomial in tau = {omega0}*{t}: {remedy}.")
+    try:
+        modes = waves_of(expression, t, omega0)
+    except NoWave as part:
+        raise _not_periodic(part.args[0], t, omega0) from None
+    for q in modes:
+        if not isinstance(q, Rational):
+            raise _not_divided(f"{expression} has a wave that", q * omega0, t, omega0)
+    return modes
 
 
-def _single(wave: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
-    """``cos`` or ``sin`` of ``q omega0 t + phase``."""
-    angle = expand(wave.args[0])
-    rate = angle.coeff(t, 1)
-    q, phase = expand(rate / omega0), expand(angle - rate * t)
-    if not isinstance(q, Rational) or t in phase.free_symbols:
-        raise NotPeriodicError(
-            f"{wave} turns {rate if t not in phase.free_symbols else angle} in time {t}, not a rational multiple of "
-            f"omega0 = {omega0}: give as omega0 a frequency that divides every one of the drive."
-        )
-    side = 1 if q > 0 else -1
-    if isinstance(wave, cos):
-        return {abs(q): (cos(phase), -side * sin(phase))}
-    return {abs(q): (sin(phase), side * cos(phase))}
+def _not_periodic(part: Any, t: Any, omega0: Any) -> NotPeriodicError:
+    if isinstance(part, (cos, sin)):
+        angle = expand(part.args[0])
+        rate = angle.coeff(t, 1)
+        return _not_divided(part, angle if t in (angle - rate * t).free_symbols else rate, t, omega0)
+    remedy = (f"replace {part} by the motion meant, such as epsilon*cos(omega0*{t})"
+              if part.atoms(AppliedUndef, Derivative) else "write the drive as a sum of cosines and sines")
+    return NotPeriodicError(f"{part} is not a trigonometric polynomial in tau = {omega0}*{t}: {remedy}.")
 
 
-def _sum(parts: Iterable[dict[Any, tuple[Any, Any]]]) -> dict[Any, tuple[Any, Any]]:
-    total: dict[Any, tuple[Any, Any]] = {}
-    for part in parts:
-        for q, (c, s) in part.items():
-            c0, s0 = total.get(q, (Integer(0), Integer(0)))
-            total[q] = (c0 + c, s0 + s)
-    return total
+def _not_divided(wave: Any, turned: Any, t: Any, omega0: Any) -> NotPeriodicError:
+    return NotPeriodicError(
+        f"{wave} turns {turned} in time {t}, not a rational multiple of omega0 = {omega0}: give as omega0 a frequency "
+        f"that divides every one of the drive."
+    )
 
 
-def _product(left: dict[Any, tuple[Any, Any]], right: dict[Any, tuple[Any, Any]]) -> dict[Any, tuple[Any, Any]]:
-    """``2 (c cos p + s sin p)(C cos q + S sin q) = (cC - sS) cos(p+q) + (sC + cS) sin(p+q) + ...(p-q)``."""
-    def beats() -> Iterator[dict[Any, tuple[Any, Any]]]:
-        for p, (c, s) in left.items():
-            for q, (C, S) in right.items():
-                yield {p + q: ((c * C - s * S) / 2, (s * C + c * S) / 2)}
-                side = 1 if p >= q else -1
-                yield {abs(p - q): ((c * C + s * S) / 2, side * (s * C - c * S) / 2)}
-    return _sum(beats())
-
-
-def matrix_modes(matrix: Any, t: Any, omega0: Any) -> dict[Any, tuple[Any, Any]]:
+def matrix_modes(matrix: Any, t: Any, omega0: Any) -> Waves:
     """The modes of a matrix: two matrices a frequency; zero frequencies and zero modes are left out of sines."""
     shape = matrix.shape
     entries = [modes_of(entry, t, omega0) for entry in matrix]

@@ -196,8 +196,9 @@ class Scene(Arrangement):
         """This chain with numbers for its Symbols: accelerations in O(n), ready for :func:`lagrangian.simulate`.
 
         ``values`` maps Symbols to numbers, taken exactly; ``model`` as in :class:`lagrangian.CompiledChain`.  A support
-        that moves in waves, ``c cos(qt) + s sin(qt)``, costs least.  Raises QuantityError where a Symbol has no number,
-        DriveError where the support moves by a function that is not elementary, TextError for text.
+        that moves in waves, ``c cos(qt) + s sin(qt)``, or products of them, costs least.  Raises QuantityError where a
+        Symbol has no number, DriveError where the support moves by a function that is not elementary, TextError for
+        text.
 
         >>> from sympy import symbols
         >>> from lagrangian import Rod

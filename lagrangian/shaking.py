@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 
 import flint
 import numpy as np
-from sympy import Add, Expr, Integer, Mul, cos, cosh, expand, pi, sin, sinh, tanh
+from sympy import Integer, cosh, pi, sinh, tanh
 from sympy.core.function import AppliedUndef
 
 from .angles import revolved
@@ -29,6 +29,7 @@ from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
 from .jets import FUNCTIONS, Jet, evaluate
 from .quantities import high_low, real_number, refuse_text, to_float
+from .waves import NoWave, waves_of
 
 __all__ = ["Shaking", "shaking_of", "shaking_of_expressions"]
 
@@ -221,15 +222,14 @@ def shaking_of_expressions(xi: Any, eta: Any, t: Any, motion: tuple[Any, ...] = 
                              f"write the "
                              f"motion, such as epsilon*cos(omega0*{t}).")
     try:
-        constant: list[Any] = [Integer(0), Integer(0)]
-        waves: dict[Any, list[Any]] = {}
-        for part, expression in enumerate((xi, eta)):
-            for term in Add.make_args(expand(expression)):
-                _add_term(term, t, part, constant, waves)
-        return Shaking((constant[0], constant[1]), tuple((q, *w) for q, w in waves.items()))
-    except _NotAWave:
+        parts = [waves_of(expression, t) for expression in (xi, eta)]
+    except NoWave:
         return Shaking(function=_evaluated((xi, eta), t), motion=_evaluated(motion, t),
                        name=f"the support's acceleration ({xi}, {eta})")
+    none = Integer(0), Integer(0)
+    waves = {q: parts[0].get(q, none) + parts[1].get(q, none) for q in sorted({*parts[0], *parts[1]})}
+    cx, _, cy, _ = waves.pop(Integer(0), none + none)
+    return Shaking((cx, cy), tuple((q, *sizes) for q, sizes in waves.items() if any(sizes)))
 
 
 def _evaluated(expressions: tuple[Any, ...], t: Any) -> Callable[..., Any]:
@@ -256,25 +256,3 @@ class _Expressions:
 
     def __call__(self, time: Any, number: Any) -> tuple[Any, ...]:
         return tuple(evaluate(expression, self.t, time, number) for expression in self.expressions)
-
-
-class _NotAWave(Exception):
-    """A term that is neither constant nor a wave."""
-
-
-def _add_term(term: Expr, t: Any, part: int, constant: list[Any], waves: dict[Any, list[Any]]) -> None:
-    factor, rest = term.as_independent(t, as_Add=False)
-    if rest in (0, 1):
-        constant[part] += factor
-        return
-    if isinstance(rest, Mul) or not isinstance(rest, (cos, sin)):
-        raise _NotAWave
-    angle = expand(rest.args[0])
-    q = angle.coeff(t, 1)
-    phase = expand(angle - q * t)
-    if t in phase.free_symbols or t in q.free_symbols:
-        raise _NotAWave
-    wave = waves.setdefault(q, [Integer(0)] * 4)
-    c, s = (cos(phase), -sin(phase)) if isinstance(rest, cos) else (sin(phase), cos(phase))
-    wave[2 * part] += factor * c
-    wave[2 * part + 1] += factor * s
