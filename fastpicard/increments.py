@@ -9,7 +9,8 @@ rows, and integration ``q G_r = f_r + G_{r+1}`` is one exact division,
 
     G = quotient of  x f(x)  by  q x - 1,
 
-all of it inside python-flint.  Two integrals are one division too, of ``x**2 f(x)``
+all of it inside python-flint.  Rows are found by one integer, twice the packed
+angle plus the kind: moving by ``2 k`` moves the angle by ``k``.  Two integrals are one division too, of ``x**2 f(x)``
 by ``-(q x - 1)**2``, and differentiation is a product, ``(1 - q x) G / x``.  So
 where a row of ``P`` is constant, as in ``x_0' = x_1``, and commutes with the integral,
 ``P I_k`` is integrated twice for ``x_1``: that is the increment of ``x_0`` after the
@@ -29,7 +30,7 @@ from fastpicard.coordinates import Problem, Row, Term
 from fastpicard.modes import COS, SIN, Modes, mask
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
-Rows = dict[tuple[int, int], Any]  # (kind, angle) -> fmpq_poly
+Rows = dict[int, Any]  # 2 * angle + kind -> fmpq_poly
 Entry = dict[int, Rows]  # monomial -> rows
 
 _FLIP = fmpq_poly([0, -1])
@@ -76,7 +77,7 @@ def first_level(p: Problem) -> Level:
 def _constants(terms: tuple[Term, ...]) -> Entry:
     entry: Entry = {}
     for kind, angle, monomial, c in terms:
-        _add_rows(entry.setdefault(monomial, {}), {(kind, angle): fmpq_poly([c])})
+        _add_rows(entry.setdefault(monomial, {}), {2 * angle + kind: fmpq_poly([c])})
     return entry
 
 
@@ -167,31 +168,37 @@ def _add_rows(target: Rows, rows: Rows) -> None:
 
 def _multiply_cosine(target: Rows, rows: Rows, k: int) -> None:
     """Add ``2 cos(k) rows``: every row moves up by ``k`` and down by ``k`` ([Neves], section 4: product to sum)."""
-    get = target.get
-    for (kind, angle), row in rows.items():
-        if angle == 0:
+    get, step = target.get, 2 * k
+    for key, row in rows.items():
+        if key < 2:
             row = row + row
         else:
-            lower, below = angle - k, row
+            lower, below = key - step, row
             if lower < 0:
-                lower, below = -lower, reflected(kind, row)
-            key = kind, lower
-            old = get(key)
-            target[key] = below if old is None else old + below
-        key = kind, angle + k
-        old = get(key)
-        target[key] = row if old is None else old + row
+                lower, below = _reflection(lower, row)
+            old = get(lower)
+            target[lower] = below if old is None else old + below
+        upper = key + step
+        old = get(upper)
+        target[upper] = row if old is None else old + row
 
 
 def _multiply_sine(target: Rows, rows: Rows, k: int) -> None:
     """Add ``2 sin(k) rows``: the kind changes, and one of the two directions its sign."""
-    for (kind, angle), row in rows.items():
-        outer, inner = (row, -row) if kind == COS else (-row, row)
-        lower = angle - k
+    for key, row in rows.items():
+        outer, inner = (-row, row) if key & 1 else (row, -row)
+        other = key ^ 1
+        lower = other - 2 * k
         if lower < 0:
-            lower, inner = -lower, reflected(1 - kind, inner)
-        _add_rows(target, {(1 - kind, angle + k): outer})
-        _add_rows(target, {(1 - kind, lower): inner})
+            lower, inner = _reflection(lower, inner)
+        _add_rows(target, {other + 2 * k: outer})
+        _add_rows(target, {lower: inner})
+
+
+def _reflection(key: int, row: Any) -> tuple[int, Any]:
+    """The place and the row of the same function where the angle is negative."""
+    kind = key & 1
+    return 2 * kind - key, reflected(kind, row)
 
 
 def reflected(kind: int, row: Any) -> Any:
@@ -202,8 +209,8 @@ def reflected(kind: int, row: Any) -> Any:
 # -- calculus -----------------------------------------------------------------
 
 
-class Divisors(dict[tuple[int, int], Any]):
-    """For kinds and packed angles ``(divisor, kind and angle of the integral, q, the angle at time 0)``.
+class Divisors(dict[int, Any]):
+    """For places of rows ``(divisor, place of the integral, q, the angle at time 0)``.
 
     The divisors are ``q x - 1`` of cosines, ``1 - q x`` of sines, for two integrals the product of both; where the
     integrand has the number ``common`` as a factor, over it.
@@ -212,12 +219,12 @@ class Divisors(dict[tuple[int, int], Any]):
     def __init__(self, p: Problem, times: int, common: Any = 1) -> None:
         self.coordinates, self.times, self.common = p.coordinates, times, common
 
-    def __missing__(self, key: tuple[int, int]) -> tuple[Any, tuple[int, int], int, int]:
-        kind, angle = key
+    def __missing__(self, key: int) -> tuple[Any, int, int, int]:
+        angle = key >> 1
         q = self.coordinates.frequency(angle)
         cosine, sine = fmpq_poly([-1, q]), fmpq_poly([1, -q])
-        divisor = cosine * sine if self.times == 2 else cosine if kind == COS else sine
-        target = key if self.times == 2 else (1 - kind, angle)
+        divisor = cosine * sine if self.times == 2 else sine if key & 1 else cosine
+        target = key if self.times == 2 else key ^ 1
         found = self[key] = divisor / self.common, target, q, self.coordinates.without_frequency(angle)
         return found
 
@@ -233,8 +240,8 @@ def _integrated(rows: Rows, divisors: Divisors) -> Rows:
     starts: dict[tuple[int, int, int], list[tuple[Any, Any]]] = {}
     times = divisors.times
     for key, row in rows.items():
-        if key[1] == 0:
-            row = mask(key[0], row)
+        if key < 2:
+            row = mask(key, row)
         if not row:
             continue
         divisor, target, q, start = divisors[key]
@@ -243,14 +250,17 @@ def _integrated(rows: Rows, divisors: Divisors) -> Rows:
             _add_rows(result, {target: row})
             continue
         result[target] = row
-        kind, number, denominator = target[0], row.numer(), row.denom()
+        kind, number, denominator = target & 1, row.numer(), row.denom()
         if start or kind == COS:
             starts.setdefault((kind, start, 0), []).append((-number[0], denominator))
         if times == 2 and (start or kind == SIN):
             starts.setdefault((kind, start, 1), []).append((q * number[0] - number[1], denominator))
     for (kind, start, r), fractions in starts.items():
         row = fmpq_poly([0] * r + [_sum(fractions)])
-        _add_rows(result, {(kind, abs(start)): row if start >= 0 else reflected(kind, row)})
+        place = 2 * start + kind
+        if start < 0:
+            place, row = _reflection(place, row)
+        _add_rows(result, {place: row})
     return result
 
 
@@ -266,9 +276,8 @@ def _sum(fractions: list[tuple[Any, Any]]) -> Any:
 def _derivative(rows: Rows, divisors: Divisors) -> Rows:
     """The inverse of integration: ``(1 - q x) G / x``."""
     result: Rows = {}
-    for (kind, angle), row in rows.items():
-        key = 1 - kind, angle
-        result[key] = (row * divisors[key][0]).right_shift(1)
+    for key, row in rows.items():
+        result[key ^ 1] = (row * divisors[key ^ 1][0]).right_shift(1)
     return result
 
 
@@ -285,16 +294,16 @@ def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
     start_of = p.coordinates.without_frequency if p.coordinates.phases else _nowhere
     for monomial, rows in entry.items():
         collapsed: Rows = {}
-        for (kind, angle), row in rows.items():
-            start = start_of(angle)
+        for key, row in rows.items():
+            angle = key >> 1
+            place = 2 * start_of(angle) + (key & 1)
             if half_turns and p.coordinates.frequency(angle) * half_turns % 2:
                 row = -row
-            if start < 0:
-                start, row = -start, reflected(kind, row)
-            old = collapsed.get((kind, start))
-            collapsed[kind, start] = row if old is None else old + row
-        result[monomial] = {(kind, start): row if start else mask(kind, row)
-                            for (kind, start), row in collapsed.items()}
+            if place < 0:
+                place, row = _reflection(place, row)
+            old = collapsed.get(place)
+            collapsed[place] = row if old is None else old + row
+        result[monomial] = {place: mask(place, row) if place < 2 else row for place, row in collapsed.items()}
     return result
 
 
@@ -306,24 +315,45 @@ def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
     """The sum of entries of increments as a series in ``t = s / unit``."""
     modes: Modes = {}
     plain = p.coordinates.unit == (ONE, 1)
+    waves = _Waves(p)
+    for monomial, rows in _total(p, entries).items():
+        for key, row in rows.items():
+            kind, turned, angle = waves[key]
+            if turned:
+                row = reflected(kind, row)
+            if plain:
+                modes[kind, angle, monomial] = row
+            else:
+                _add_by_power(modes, kind, angle, monomial, row, p.coordinates.unit)
+    for mode in [mode for mode, f in modes.items() if not f]:
+        del modes[mode]
+    return modes
+
+
+def _total(p: Problem, entries: Iterable[Entry]) -> dict[Monomial, Rows]:
+    """The sum of entries, which is cheaper to form before angles are unpacked."""
+    total: dict[Monomial, Rows] = {}
     for entry in entries:
         for packed, rows in entry.items():
             factor, monomial = p.monomial(packed)
             if factor != 1:
                 rows = {key: row * factor for key, row in rows.items()}
-            for (kind, angle), row in rows.items():
-                turned, exact = p.angle(angle)
-                if turned:
-                    row = reflected(kind, row)
-                if not plain:
-                    _add_by_power(modes, kind, exact, monomial, row, p.coordinates.unit)
-                    continue
-                key = kind, exact, monomial
-                old = modes.get(key)
-                modes[key] = row if old is None else old + row
-    for key in [key for key, f in modes.items() if not f]:
-        del modes[key]
-    return modes
+            if monomial in total:
+                _add_rows(total[monomial], rows)
+            else:
+                total[monomial] = dict(rows)
+    return total
+
+
+class _Waves(dict[int, Any]):
+    """For places of rows ``(kind, was the angle reflected, angle)``."""
+
+    def __init__(self, p: Problem) -> None:
+        self.problem = p
+
+    def __missing__(self, key: int) -> tuple[int, bool, Any]:
+        found = self[key] = key & 1, *self.problem.angle(key >> 1)
+        return found
 
 
 def _add_by_power(modes: Modes, kind: int, angle: Any, monomial: Monomial, row: Any, unit: Any) -> None:
