@@ -103,7 +103,7 @@ def _steps(p: Problem) -> list[_Step]:
     steps = []
     for i, row in enumerate(p.rows):
         common = fmpq(1) if constant[i] else _content([c for _, terms in row for _, _, _, c in terms])
-        row = tuple((j, tuple((kind, k, m, c / common) for kind, k, m, c in terms)) for j, terms in row)
+        row = tuple((j, tuple((kind, k, m, _number(c / common)) for kind, k, m, c in terms)) for j, terms in row)
         steps.append(_Step(row, constant[i], Divisors(p, 1, common),
                            Divisors(p, 2, common) if i in awaited and not constant[i] else None))
     return steps
@@ -113,6 +113,11 @@ def _content(values: list[Any]) -> Any:
     """The number with the sign of the first of which all are coprime integer multiples."""
     common = fmpq(gcd(*(int(c.p) for c in values)), lcm(*(int(c.q) for c in values)))
     return common if values[0] > 0 else -common
+
+
+def _number(c: Any) -> Any:
+    """A rational number, as int where it is whole: comparing an int costs much less."""
+    return int(c.p) if c.q == 1 else c
 
 
 def next_level(level: Level, steps: list[_Step]) -> Level:
@@ -154,7 +159,7 @@ def _product(row: Row, column: Column | Mapping[int, Entry]) -> Entry:
     return result
 
 
-def _multiple(rows: Rows, c: int) -> Rows:
+def _multiple(rows: Rows, c: Any) -> Rows:
     if c == 2:
         return {key: row + row for key, row in rows.items()}
     return {key: row * c for key, row in rows.items()}
