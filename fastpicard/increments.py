@@ -64,7 +64,7 @@ def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ..
     result = list(known[:n + 1]) or [first_level(p)]
     steps = _steps(p)
     while len(result) <= n:
-        result.append(next_level(result[-1], steps))
+        result.append(next_level(result[-1], steps, last=len(result) == n))
     return tuple(result)
 
 
@@ -120,16 +120,16 @@ def _number(c: Any) -> Any:
     return int(c.p) if c.q == 1 else c
 
 
-def next_level(level: Level, steps: list[_Step]) -> Level:
-    """``I_{m+1}``, the integral of ``P I_m``."""
-    return Level(level.order + 1, tuple(_next_column(column, steps) for column in level.columns))
+def next_level(level: Level, steps: list[_Step], last: bool = False) -> Level:
+    """``I_{m+1}``, the integral of ``P I_m``; of the last one no integrals are kept to go on from."""
+    return Level(level.order + 1, tuple(_next_column(column, steps, last) for column in level.columns))
 
 
-def _next_column(column: Column, steps: list[_Step]) -> Column:
+def _next_column(column: Column, steps: list[_Step], last: bool) -> Column:
     entries: dict[int, Entry] = {}
     integrals: dict[int, Entry] = {}
     for i, step in enumerate(steps):
-        if step.twice is not None:
+        if step.twice is not None and not last:
             integrals[i] = _integral(_product(step.row, column), step.twice)
         elif step.constant and all(j in column.integrals for j, _ in step.row):
             entries[i] = _product(step.row, column.integrals)
