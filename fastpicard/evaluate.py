@@ -266,6 +266,14 @@ def check_digits(digits: Any) -> int | None:
     return int(digits)
 
 
+def count_of_digits(digits: Any) -> int:
+    """A positive number of decimal digits, where float64 is none of the answers."""
+    wanted = check_digits(digits)
+    if wanted is None:
+        raise BadTypeError("digits must be a positive integer here, but it is None.  Use digits=15.")
+    return wanted
+
+
 def refine(compute: Callable[[], list[Any]], digits: int | None) -> list[Any]:
     """Balls as accurate as asked for: the precision grows until every relative radius is small enough.
 

@@ -23,8 +23,8 @@ from fastpicard import modes as algebra
 from fastpicard.collapsed import Collapsed
 from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
-from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Values, ball, check_digits, exact_number, to_complex, upper_float
+from fastpicard.errors import BadInputError
+from fastpicard.evaluate import Values, ball, check_digits, count_of_digits, exact_number, to_complex, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
@@ -327,11 +327,7 @@ class FloquetMatrix:
         >>> print(F.enclosure({a: -0.1, b: 0.55}, digits=20)[0, 1].str(20))
         [18.657723844543385212 +/- 3.39e-21]
         """
-        exact = self.numbers(values)
-        wanted = check_digits(digits)
-        if wanted is None:
-            raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
-        return self._true(exact, wanted)
+        return self._true(self.numbers(values), count_of_digits(digits))
 
     def _true(self, exact: Mapping[Any, Any], digits: int, strict: bool = True) -> Any:
         """The true matrix in balls with these digits, or if not strict with those that wide parameters leave."""
@@ -365,9 +361,7 @@ class FloquetMatrix:
         Of a multiplier that cannot be told from a double one the ball contains both; its digits cost twice
         the precision.
         """
-        wanted = check_digits(digits)
-        if wanted is None:
-            raise BadTypeError("digits of an enclosure must be a positive integer, but it is None.  Use digits=15.")
+        wanted = count_of_digits(digits)
         exact = self.numbers(values)
         paired, _ = self._structure(exact)
         tried = wanted + 5

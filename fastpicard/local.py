@@ -30,7 +30,7 @@ from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
-from fastpicard.remainder import a_priori
+from fastpicard.remainder import a_priori, least_order
 from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
 
 Array = Any
@@ -119,19 +119,8 @@ def common_bound(bounds: list[Array]) -> Harmonics:
 
 
 def order_for(majorant: Harmonics, period: Any, tol: float) -> int:
-    """The smallest order whose a-priori remainder is at most ``tol`` in every entry."""
-    high = 8
-    while not _largest(majorant, period, high) <= tol:
-        high *= 2
-    low = high // 2
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if _largest(majorant, period, middle) <= tol else (middle, high)
-    return high
-
-
-def _largest(majorant: Harmonics, period: Any, n: int) -> float:
-    return max(upper_float(x.upper()) for x in a_priori(majorant, period, n).entries())
+    """The smallest order from 5 up whose a-priori remainder is at most ``tol`` in every entry."""
+    return least_order(lambda n: all(upper_float(x.upper()) <= tol for x in a_priori(majorant, period, n).entries()), 8)
 
 
 # -- models --------------------------------------------------------------------

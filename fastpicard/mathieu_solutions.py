@@ -18,8 +18,8 @@ from flint import acb, arb, arb_mat
 from mpmath.libmp import dps_to_prec
 
 from fastpicard.enclosure import over_period, to_digits, transition
-from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import ball, check_digits, exact_number, to_complex, to_number
+from fastpicard.errors import BadInputError
+from fastpicard.evaluate import ball, count_of_digits, exact_number, to_complex, to_number
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 
@@ -76,7 +76,7 @@ def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
     >>> print(mpmath.nstr(mathieu_exponent(1, 1, 12), 12))  # in the first zone of instability
     (1.0 + 0.453453534347j)
     """
-    wanted, numbers = _checked(digits), _numbers(a, q)
+    wanted, numbers = count_of_digits(digits), _numbers(a, q)
     tried = wanted + 5
     while tried <= 8 * wanted + 200:
         matrix = over_period(lambda: (_equation(*map(ball, numbers)), arb.pi()), 1, tried)
@@ -103,7 +103,7 @@ def _exponent(cosine: Any) -> Any:
 
 
 def _solution(a: Any, q: Any, z: Any, digits: Any, column: int) -> Any:
-    wanted, (x, y, end) = _checked(digits), _numbers(a, q, z)
+    wanted, (x, y, end) = count_of_digits(digits), _numbers(a, q, z)
 
     def once() -> Any:
         return arb_mat([[transition(_equation(ball(x), ball(y)), arb(0), ball(end))[0, column]]])
@@ -120,10 +120,3 @@ def _equation(a: Any, q: Any) -> Harmonics:
 
 def _numbers(*values: Any) -> tuple[Any, ...]:
     return tuple(exact_number(value, name) for value, name in zip(values, ("a", "q", "z"), strict=False))
-
-
-def _checked(digits: Any) -> int:
-    wanted = check_digits(digits)
-    if wanted is None:
-        raise BadTypeError("digits must be a positive integer, but it is None.  Use digits=15.")
-    return wanted

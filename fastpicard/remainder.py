@@ -24,7 +24,7 @@ a-priori bound may be the smaller one: each entry is the smaller of both.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from flint import arb, arb_mat, arb_poly
@@ -112,14 +112,19 @@ def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
 
 
 def a_priori_order(P: Harmonics, period: Any, tol: Any) -> int:
-    """The smallest ``n`` whose a-priori bound meets ``tol``, by doubling and bisection."""
-    high = 1
-    while not largest_row_sum(a_priori(P, period, high)) <= tol:
+    """The smallest ``n`` from 1 up whose a-priori bound meets ``tol``: largest row sum."""
+    return least_order(lambda n: bool(largest_row_sum(a_priori(P, period, n)) <= tol))
+
+
+def least_order(suffices: Callable[[int], bool], start: int = 1) -> int:
+    """The smallest ``n`` above ``start/2`` that suffices, as all beyond it do: by doubling and bisection."""
+    high = start
+    while not suffices(high):
         high *= 2
     low = high // 2
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (low, middle) if largest_row_sum(a_priori(P, period, middle)) <= tol else (middle, high)
+        low, high = (low, middle) if suffices(middle) else (middle, high)
     return high
 
 

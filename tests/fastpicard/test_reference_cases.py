@@ -20,6 +20,12 @@ def cases(name):
     return [pytest.param(case, id=case["id"]) for case in json.loads(path.read_text())["cases"]]
 
 
+def truncation_errors():
+    """Every case and order of ``truncation_errors.json``, as a parametrisation."""
+    return [pytest.param(case.values[0], row, id=f"{case.id}-n{row['n']}")
+            for case in cases("truncation_errors") for row in case.values[0]["rows"]]
+
+
 def read(text):
     """The exact expression that a reference string holds; its variable is named ``t``."""
     return sympify(text, rational=True)
@@ -212,14 +218,7 @@ def test_a_scalar_equation_gives_the_exponential_series(case):
     assert FloquetMatrix(system(case), t, 8).as_matrix()[0, 0] == sympy.expand(series)
 
 
-@pytest.mark.parametrize(
-    "case, row",
-    [
-        pytest.param(c.values[0], row, id=f"{c.id}-n{row['n']}")
-        for c in cases("truncation_errors")
-        for row in c.values[0]["rows"]
-    ],
-)
+@pytest.mark.parametrize("case, row", truncation_errors())
 def test_traces_of_iterates_equal_the_reference_at_every_order(case, row):
     """The n-th iterate's own trace: forty digits whatever its distance from the truth."""
     F = FloquetMatrix(system(case).subs(numbers(case["params"])), t, row["n"])

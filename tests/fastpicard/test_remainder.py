@@ -8,7 +8,7 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, Symbol, cos, pi, sin, sqrt
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError
-from tests.fastpicard.test_reference_cases import cases, numbers, system
+from tests.fastpicard.test_reference_cases import numbers, system, truncation_errors
 from tests.oracles import true_fundamental_matrix, truncation_bound
 
 t, a, b, c = map(Symbol, "tabc")
@@ -26,14 +26,7 @@ def error_norm(F, values, digits=40):
         return mpmath.mnorm(truth - F.evaluate(values, digits), mpmath.inf)
 
 
-@pytest.mark.parametrize(
-    "case, row",
-    [
-        pytest.param(c.values[0], row, id=f"{c.id}-n{row['n']}")
-        for c in cases("truncation_errors")
-        for row in c.values[0]["rows"]
-    ],
-)
+@pytest.mark.parametrize("case, row", truncation_errors())
 def test_the_bound_holds_and_is_sharp_on_the_reference_errors(case, row):
     """At least the true error; where iterates converge, at most a few percent more, and below the classical bound."""
     F = FloquetMatrix(system(case), t, row["n"])
