@@ -206,6 +206,12 @@ class CompiledChain:
         g = arithmetic.number(self.gravity) if arithmetic else to_float(self.gravity)
         return ax, self.up * (g + ay)
 
+    @cached_property
+    def steady_pull(self) -> tuple[float, float]:
+        """The constant part of :meth:`pull` in float64, which weights are counted with; m/s**2."""
+        ax, ay = self.support.floats[0].tolist()
+        return ax, self.up * (to_float(self.gravity) + ay)
+
     # -- accelerations ------------------------------------------------------------------------------------
 
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
@@ -224,7 +230,7 @@ class CompiledChain:
                 return self._exactly(arithmetic, t, theta, omega)
             t = float_time(t)
         theta, omega = float_states(theta, omega, self._count)
-        ax, ay = self._steady_pull if self._steady else map(float, self.pull(t))
+        ax, ay = self.steady_pull if self._steady else map(float, self.pull(t))
         out = np.empty_like(theta)
         done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
         if not done:
@@ -264,11 +270,6 @@ class CompiledChain:
         light = LIGHT * max(m)
         rows = [rod_row(x or light, *rest) for x, *rest in zip(m, l, H, [x**2 for x in R], strict=True)]
         return np.array(rows, dtype=object), self.joints_in(FINE)
-
-    @cached_property
-    def _steady_pull(self) -> tuple[float, float]:
-        ax, ay = self.pull(0.0)
-        return float(ax), float(ay)
 
     @cached_property
     def _joint_floats(self) -> tuple[Any, Any]:
@@ -372,10 +373,10 @@ class CompiledChain:
         mx, my = (m * end for end in ends)
         centres = [(mx - mG * c * omega) / m, (my + mG * s * omega) / m]
         kinetic = (m * (centres[0] ** 2 + centres[1] ** 2) + Ic * omega**2).sum(axis=0) / 2
-        ax, ay = (to_float(x) for x in self.support.constant)
+        ax, ay = self.steady_pull
         beyond = np.concatenate([np.cumsum(m[::-1], axis=0)[::-1][1:], np.zeros_like(m[:1])])
         p = mH + l * beyond
-        potential = (p * (ax * s + self.up * (to_float(self.gravity) + ay) * c)).sum(axis=0)
+        potential = (p * (ax * s + ay * c)).sum(axis=0)
         if self._joints[1] is not None:
             delta = np.diff(theta, axis=0, prepend=0.0)
             potential = potential + (self.springs.reshape(shape) * delta**2).sum(axis=0) / 2
@@ -388,6 +389,4 @@ class CompiledChain:
         0 without weight.
         """
         reach = np.array(list(accumulate(self.rods[:, 1])))
-        ax, ay = (to_float(x) for x in self.support.constant)
-        pull = max(abs(to_float(self.gravity) + ay), abs(ax))
-        return float((self.rods[:, 0] * reach).sum() * pull)
+        return float((self.rods[:, 0] * reach).sum() * max(map(abs, self.steady_pull)))

@@ -132,16 +132,14 @@ def _shaking(chain: CompiledChain, clock: Any, order: int, moved: bool) -> tuple
     Where there are waves its steady part is one of them, of frequency 0, and the series is left to them.  A function
     of time is given a float, whose rounding it may amplify; ``moved``: by one unit in its last place.
     """
-    g, up = to_float(chain.gravity), chain.up
-    pull = np.zeros((2, order))
+    up, pull = chain.up, np.zeros((2, order))
     if chain.support.function is not None:
         now = float(clock[0] + clock[1]) * (1.0 + moved * np.finfo(float).eps)
         pull[:] = np.array(chain.support.series(now, order, None), dtype=float)[:, :order]
-        pull[1, 0] += g
+        pull[1, 0] += to_float(chain.gravity)
         pull[1] *= up
         return pull, None
-    (ax, ay), waves = chain.support.floats
-    pull[:, 0] = ax, up * (ay + g)
+    pull[:, 0], waves = chain.steady_pull, chain.support.floats[1]
     if not len(waves):
         return pull, None
     waves = waves * np.array([1.0, 1.0, 1.0, 1.0, 1.0, up, up])

@@ -18,7 +18,6 @@ import numpy as np
 
 from .chain import CompiledChain
 from .errors import NotAnEquilibriumError, QuantityError, SceneError
-from .quantities import to_float
 
 __all__ = ["swing"]
 
@@ -30,8 +29,8 @@ def swing(chain: CompiledChain, theta: Any, omega: Any, times: Any) -> tuple[Any
     no weight, springs whose rest is upright; and where dampers would make the modes decay.  Raises SceneError where
     masses are too far apart for M to be inverted, QuantityError where modes grow beyond float64.
     """
-    ax, ay = (to_float(x) for x in chain.support.constant)
-    pull = to_float(chain.gravity) + ay
+    ax, ay = chain.steady_pull
+    pull = chain.up * ay
     reasons = [(not chain.support.steady or ax != 0, "the support of this one accelerates"),
                (pull <= 0, f"this one's weight is {pull:.3g} m/s**2"),
                (chain.damping is not None, "this one has dampers"),
