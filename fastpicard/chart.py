@@ -17,6 +17,7 @@ and damped charts is an estimate (the matrix's bound times its eigenvectors' con
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from math import lgamma
 from typing import Any
 
@@ -31,14 +32,15 @@ from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.local import BITS, convex, span_at
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
-from fastpicard.sweeps import chart_type
+from fastpicard.sweeps import chart_type, in_parts
 from fastpicard.vectorise import Evaluator
 
 Array = Any
 
 
 def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any],
-          points: tuple[int, int] = (400, 400), fixed: Values | None = None, modes: Any = None) -> Any:
+          points: tuple[int, int] = (400, 400), fixed: Values | None = None, modes: Any = None,
+          chunks: tuple[int, int] | None = None) -> Any:
     """Trace, margin, verdict and error bound of the n-th iterate on a grid of two parameters.
 
     Parameters
@@ -48,6 +50,9 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     points : (across, up)
     fixed : {Symbol: number} for the other parameters
     modes : sequence of {Symbol: expression}, as for :func:`certify`
+    chunks : None, or the points (across, up) of a part
+        the arrays are then dask's: parts are computed when they are asked for, on all cores, and charts may be larger
+        than memory; ``chart(...).to_zarr(...)`` and dask's schedulers take them
 
     Returns
     -------
@@ -59,9 +64,9 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     Raises
     ------
     BadInputError, BadTypeError, MissingParameterError
-        if the axes, points, modes or fixed values are not as described.
+        if the axes, points, chunks, modes or fixed values are not as described.
     NotInstalledError
-        without xarray.
+        without xarray; for chunks, without dask.
 
     Notes
     -----
@@ -77,48 +82,63 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     1
     """
     problem = read_chart(F, x, y, fixed, modes)
-    across, up = _counts(points)
+    if not problem.members:
+        raise BadInputError("a chart needs at least one mode, but modes is empty.  Leave it out for F itself.")
+    across, up = _counts(points, 2, "points", "a chart needs two points along each axis")
     np, Chart = numpy(), chart_type()
     first, second = problem.axes
     xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)
-    grid = [z.ravel() for z in np.meshgrid(xs, ys)]
-    paired, _ = pairs(problem.F.P)
-    scalar = paired and problem.F.shape == (2, 2)
-    compute = _by_matrix if not scalar else _by_factors if reversal(problem.F.P) == (1, -1) else _by_trace
-    best: list[Array] | None = None
-    for member in problem.members:
-        found = list(compute(problem, member, grid, paired))
-        if best is None:
-            best = found
-        else:
-            worse = found[1] < best[1]
-            best = [np.where(worse, new, old) for new, old in zip(found, best, strict=True)]
-    if best is None:
-        raise BadInputError("a chart needs at least one mode, but modes is empty.  Leave it out for F itself.")
-    trace, margin, error = (z.reshape(up, across) for z in best)
-    verdict = np.where(abs(margin) <= error, 0, np.sign(margin)).astype(np.int8)
-    verdict = np.where(np.isfinite(margin) & np.isfinite(error), verdict, 0).astype(np.int8)
-    open_ = np.flatnonzero(verdict.ravel() == 0)
-    corner = np.stack([axis.inner(z[open_]) for axis, z in zip(problem.axes, grid, strict=True)])
-    convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])
-    verdict.reshape(-1)[open_[convex_there]] = -1
+    if chunks is None:
+        trace, margin, error, verdict = _sample(problem, xs, ys)
+    else:
+        part = _counts(chunks, 1, "chunks", "a part of a chart has at least one point along each axis")
+        trace, margin, error, verdict = in_parts(partial(_sample, problem), xs, ys, part)
     dims = (str(second.symbol), str(first.symbol))
     return Chart(
         {"trace": (dims, trace, {"long_name": "trace of the Floquet matrix"}),
          "margin": (dims, margin, {"long_name": "distance from the boundary: positive where stable"}),
          "error": (dims, error, {"long_name": "bound of the margin's error"}),
-         "verdict": (dims, verdict, {"long_name": "1 stable, -1 unstable, 0 undecided"})},
+         "verdict": (dims, verdict.astype(np.int8), {"long_name": "1 stable, -1 unstable, 0 undecided"})},
         {dims[0]: ys, dims[1]: xs},
         {"order": problem.F.n, "period": str(problem.F.period), "modes": len(problem.members),
-         "error_is": "bound" if scalar else "estimate", "equation": _shown(problem)})
+         "error_is": "bound" if _is_scalar(problem) else "estimate", "equation": _shown(problem)})
 
 
-def _counts(points: Any) -> Sequence[int]:
-    if not isinstance(points, tuple | list) or len(points) != 2 or not all(isinstance(k, int) for k in points):
-        raise BadTypeError(f"points must be (across, up), but it is {points!r}.  Use points=(400, 400).")
-    if min(points) < 2:
-        raise BadInputError(f"a chart needs two points along each axis, but points is {points!r}.  Use (400, 400).")
-    return points
+def _is_scalar(problem: Charted) -> bool:
+    """Whether the trace alone decides."""
+    return problem.F.shape == (2, 2) and pairs(problem.F.P)[0]
+
+
+def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
+    """Trace, margin, error and verdict at the points of a grid, shape (4, up, across)."""
+    np = numpy()
+    grid = [z.ravel() for z in np.meshgrid(xs, ys)]
+    paired, _ = pairs(problem.F.P)
+    scalar = _is_scalar(problem)
+    compute = _by_matrix if not scalar else _by_factors if reversal(problem.F.P) == (1, -1) else _by_trace
+    best: list[Array] = []
+    for member in problem.members:
+        found = list(compute(problem, member, grid, paired))
+        if best:
+            worse = found[1] < best[1]
+            found = [np.where(worse, new, old) for new, old in zip(found, best, strict=True)]
+        best = found
+    trace, margin, error = best
+    verdict = np.where(abs(margin) <= error, 0, np.sign(margin))
+    verdict = np.where(np.isfinite(margin) & np.isfinite(error), verdict, 0)
+    open_ = np.flatnonzero(verdict == 0)
+    corner = np.stack([axis.inner(z[open_]) for axis, z in zip(problem.axes, grid, strict=True)])
+    convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])
+    verdict[open_[convex_there]] = -1
+    return np.stack([trace, margin, error, verdict]).reshape(4, len(ys), len(xs))
+
+
+def _counts(given: Any, least: int, name: str, claim: str) -> Sequence[int]:
+    if not isinstance(given, tuple | list) or len(given) != 2 or not all(isinstance(k, int) for k in given):
+        raise BadTypeError(f"{name} must be (across, up), but it is {given!r}.  Use {name}=(400, 400).")
+    if min(given) < least:
+        raise BadInputError(f"{claim}, but {name} is {given!r}.  Use (400, 400).")
+    return given
 
 
 def _shown(problem: Charted) -> str:

@@ -1,5 +1,7 @@
 """Charts of points: pixels agree with what is proved, and truncation is visible."""
 
+import pickle
+
 import matplotlib
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from fastpicard.plotting import raster
 matplotlib.use("Agg")
 P = Matrix([[0, 1], [-a - b * cos(t), 0]])
 MATHIEU, ROUGH = FloquetMatrix(P, t, 40), FloquetMatrix(P, t, 12)
+DAMPED = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 30)
 MODES = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))]
 
 
@@ -50,13 +53,28 @@ def test_coupled_and_damped_systems():
     coupled = FloquetMatrix(Matrix.zeros(2).row_join(Matrix.eye(2)).col_join((-S).row_join(Matrix.zeros(2))), t, 30)
     whole = chart(coupled, (h, 0, 0.1), (v, 20, 100), points=(23, 19))
     modes = chart(MATHIEU, (h, 0, 0.1), (v, 20, 100), points=(23, 19), modes=MODES)
-    damped = chart(FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), -c]]), t, 30), (a, 0, 1), (b, 0, 1), points=(9, 9),
-                   fixed={c: Rational(1, 5)})
+    damped = chart(DAMPED, (a, 0, 1), (b, 0, 1), points=(9, 9), fixed={c: Rational(1, 5)})
 
     both = (whole["verdict"].values != 0) & (modes["verdict"].values != 0)
     assert both.mean() > 0.9
     assert (whole["verdict"].values == modes["verdict"].values)[both].all()
     assert int(damped["verdict"].sel(a=0.5, b=0.1, method="nearest")) == 1
+
+
+@pytest.mark.parametrize("F, fixed", [(MATHIEU, None), (DAMPED, {c: Rational(1, 5)})])
+def test_a_chart_in_parts_is_the_chart(F, fixed):
+    """To the last bit, computed when it is asked for."""
+    axes = {"x": (a, -1, 2), "y": (b, 0, 2), "points": (31, 23), "fixed": fixed}
+    whole, parts = chart(F, **axes), chart(F, **axes, chunks=(10, 7))
+    assert parts.trace.chunks == ((7, 7, 7, 2), (10, 10, 10, 1))
+    assert parts.compute().identical(whole)
+
+
+def test_a_chart_can_be_pickled():
+    """And draws itself still."""
+    data = chart(ROUGH, (a, -1, 1), (b, 0, 1), points=(3, 3))
+    again = pickle.loads(pickle.dumps(data))
+    assert again.identical(data) and again.plot().get_xlabel()
 
 
 def test_plots_are_drawn_with_labels():
@@ -106,3 +124,10 @@ def test_a_chart_needs_points(points, error):
     """Two at least along each axis."""
     with pytest.raises(error, match="points"):
         chart(MATHIEU, (a, 0, 1), (b, 0, 1), points=points)
+
+
+@pytest.mark.parametrize("chunks, error", [((0, 5), BadInputError), (400, BadTypeError)])
+def test_parts_of_a_chart_have_points(chunks, error):
+    """One at least along each axis."""
+    with pytest.raises(error, match="chunks"):
+        chart(MATHIEU, (a, 0, 1), (b, 0, 1), points=(5, 5), chunks=chunks)
