@@ -99,6 +99,16 @@ def test_springs_that_balance_dampers_lose_no_digits(seed):
     assert error(batch[:, 1], exact) < 4e-15
 
 
+def test_even_rods_whose_joints_balance_are_asked_for_their_doubt_in_a_batch():
+    """The slowest of 3000 states of one rod, whose damper, spring and weight cancel: 1e-12 if nobody asks."""
+    rng = np.random.default_rng(0)
+    rods, joints = ([1.0], [1.0], [0.5], [0.6]), ([2.0], [3.0])
+    theta, omega = rng.uniform(-9, 9, (1, 3000)), rng.normal(size=(1, 3000))
+    found = CompiledChain(*rods, damping=joints[0], springs=joints[1]).acceleration(0, theta, omega)
+    for j in abs(found[0]).argsort()[:10]:
+        assert error(found[:, j], dense(*rods, 9.81, theta[:, j], omega[:, j], *joints)) < 4e-15
+
+
 def balanced_chain(seed):
     """A slow chain whose springs all but carry its weight."""
     rng = np.random.default_rng(seed)
