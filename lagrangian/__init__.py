@@ -16,6 +16,7 @@ from .chain import CompiledChain
 from .compiled import CompiledEquations, compile_equations
 from .crossings import Crossing, flips
 from .energy import Scene
+from .ensemble import Ensemble
 from .equations import EquationsOfMotion, euler_lagrange
 from .errors import (
     DriveError,
@@ -43,6 +44,7 @@ __all__ = [
     "CompiledEquations",
     "Crossing",
     "DriveError",
+    "Ensemble",
     "EquationsOfMotion",
     "FirstOrderSystem",
     "InhomogeneousError",

@@ -20,23 +20,25 @@ from typing import Any
 import numpy as np
 from sympy import Rational
 
-from .angles import LARGEST, sines_of_large_joints
+from .angles import LARGEST
 from .arithmetic import Arithmetic, arithmetic_of
 from .constants import (
+    LIGHT,
     NAMES,
     check_joints,
     checked,
     column,
+    even,
+    float_row,
     joint_constants,
-    products,
     rod_row,
     to_floats,
 )
 from .errors import NotAQuantityError, QuantityError, SceneError
-from .lanes import LANES, accelerate_lanes
+from .lanes import LANES, accelerate_lanes, accelerate_rows
 from .machine import has_numba, machine
 from .quantities import quantity, real_number, to_float
-from .recursion import DOUBT, accelerate_bobs, accelerate_rods
+from .recursion import accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
@@ -48,7 +50,6 @@ __all__ = ["CompiledChain"]
 MODELS = ("bobs", "rods")
 LONG = 10_000
 LONG_EVEN = 100  # even rods, from which on they are not asked for their doubt
-LIGHT = 1e-40  # of the largest mass: stands for no mass, and no float64 result can tell
 
 
 class CompiledChain:
@@ -116,7 +117,7 @@ class CompiledChain:
         return self._count
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name not in ("_kept", "_fine")}
+        return {name: value for name, value in self.__dict__.items() if name not in ("_kept", "_fine", "_steady_fine")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _kept=local())
@@ -171,11 +172,7 @@ class CompiledChain:
         if self._columns[0].dtype == object:
             exact = self._exact_rods(Rational(LIGHT))
             return np.array([[to_float(x) for x in row] for row in exact])
-        m, l, H, R = self._columns
-        m = np.where(m == 0, LIGHT * m.max(), m)
-        spin, coupling = products(R, R, H, H), products(R, R, H, l)
-        return np.ascontiguousarray(np.stack([m, l, m * R * R, m * spin, m * coupling, m * (spin + (l - H) ** 2), m * H,
-                                              m * (l - H)], axis=1))
+        return np.stack(float_row(*self._columns), axis=1)
 
     @cached_property
     def bobs(self) -> Any:
@@ -243,24 +240,28 @@ class CompiledChain:
 
     @cached_property
     def _even(self) -> bool:
-        """Whether many chains, or a long one, are not asked for their doubt.
-
-        No torque might balance a weight; masses, and lengths, are within a factor 10 of each other; and no rod is a
-        tenth as wide as long.
-        """
-        m, l, I = self.rods[:, :3].T
-        even = m.max() <= 10 * m.min() and l.max() <= 10 * l.min() and (m * l * l <= 100 * I).all()
-        return not self.has_torques and bool(even)
+        """Whether many chains, or a long one, are not asked for their doubt: torques might balance."""
+        return not self.has_torques and bool(even(*self.rods[:, :3].T))
 
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n, chains) from exact numbers, rounded once."""
-        pull = self.pull(t) if self.support.function is not None else self.pull(FINE.coerced(t), FINE)
+        pull = self._fine_pull(t)
         found = in_pairs(self._in_pairs, pull, theta, omega)
         if found is None:
             found = np.empty_like(theta)
             for j in range(theta.shape[1]):
                 found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
         return found
+
+    def _fine_pull(self, t: Any) -> Any:
+        """:meth:`pull` in numbers of FINE, or in floats where the support moves by a function of them."""
+        if self._steady:
+            return self._steady_fine
+        return self.pull(t) if self.support.function is not None else self.pull(FINE.coerced(t), FINE)
+
+    @cached_property
+    def _steady_fine(self) -> Any:
+        return self.pull(FINE.coerced(0), FINE)
 
     @cached_property
     def _in_pairs(self) -> Any:
@@ -309,12 +310,7 @@ class CompiledChain:
             work = np.empty((n, (6 if self._even else 8) * LANES))
             if machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, doubtful, out):
                 return True, False if doubtful is None else doubtful
-        s, c = np.empty_like(theta), np.empty_like(theta)
-        doubt = np.empty((2, *theta.shape))
-        with np.errstate(all="ignore"):
-            sines_of_large_joints(theta, s, c)
-            accelerate_rods(self.rods, omega * omega, tau, s, c, ax, ay, np.empty((n, 4, *theta.shape[1:])), doubt, out)
-            return bool(np.isfinite(out).all()), ~(doubt[0].max(axis=0) <= DOUBT**2 * (out * out).max(axis=0))
+        return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)
 
     def torques(self, theta: Any, omega: Any) -> Any:
         """The torque of dampers and springs on every rod, None where there are none; N m, the shape of theta."""

@@ -44,7 +44,11 @@ class CompiledEquations:
 
     def __init__(self, equations: EquationsOfMotion, values: Mapping[Any, Any] | None, target: str) -> None:
         self.equations, self.target = equations, target
-        self.chain: CompiledChain = equations.scene.compile(values)
+        chain = equations.scene.compile(values)
+        if not isinstance(chain, CompiledChain):
+            raise QuantityError(f"equations are compiled for one chain, and these values are for {len(chain)}: give "
+                                f"one number for every Symbol, or use scene.compile(values).")
+        self.chain = chain
         n, replace = len(equations.scene), substitution(values)
         self._time = Dummy("t")
         rates, angles = ([Symbol(f"{letter}{k}") for k in range(n)] for letter in ("w", "q"))

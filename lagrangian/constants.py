@@ -10,7 +10,7 @@ centre of percussion is near its end, loses no digits here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -20,10 +20,11 @@ from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .quantities import quantity, real_number, refuse_text, to_float
 
-__all__ = ["NAMES", "check_joints", "checked", "column", "joint_constants", "products", "rod_row", "substitution",
-           "to_floats"]
+__all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
+           "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
 
 NAMES = ("mass", "length", "center", "gyration")
+LIGHT = 1e-40  # of the largest mass: stands for no mass, and no float64 result can tell
 
 
 def rod_row(m: Any, l: Any, H: Any, RR: Any) -> tuple[Any, ...]:
@@ -38,6 +39,22 @@ def products(a: Any, b: Any, c: Any, d: Any) -> Any:
     return (p - q) + (pe - qe)
 
 
+def float_row(m: Any, l: Any, H: Any, R: Any) -> tuple[Any, ...]:
+    """:func:`rod_row` of float64 columns, each rounded once or twice; shapes (n,), or (chains, n)."""
+    m = np.where(m == 0, LIGHT * m.max(axis=-1, keepdims=True), m)
+    spin, coupling = products(R, R, H, H), products(R, R, H, l)
+    return m, l, m * R * R, m * spin, m * coupling, m * (spin + (l - H) ** 2), m * H, m * (l - H)
+
+
+def even(m: Any, l: Any, I: Any) -> Any:
+    """Whether masses, and lengths, are within a factor 10 of each other, and no rod is a tenth as wide as long.
+
+    Columns (n,), or (chains, n) for an answer of shape (chains,).
+    """
+    near = [x.max(axis=-1) <= 10 * x.min(axis=-1) for x in (m, l)]
+    return near[0] & near[1] & (m * l * l <= 100 * I).all(axis=-1)
+
+
 def to_floats(values: Any) -> Any:
     """Numbers as float64, shape (n,); None stays None."""
     return None if values is None else np.array([to_float(x) for x in values])
@@ -47,8 +64,8 @@ def column(values: Any, name: str) -> Any:
     """float64 where that is what was given, else exact SymPy numbers as an object array."""
     refuse_text(values, name)
     if getattr(values, "ndim", 1) > 1:
-        raise SceneError(f"{name} has shape {values.shape}: many chains at once have the same rods and differ in "
-                         f"their states, so give n numbers, and make one CompiledChain for every set of rods.")
+        raise SceneError(f"{name} has shape {values.shape}, and the rods of a CompiledChain are given by n numbers: "
+                         f"give Ensemble(mass, length, center, gyration) for many chains, each with its own rods.")
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiu" and values.ndim == 1:
         if not np.isfinite(values).all():
             bad = values[~np.isfinite(values)][0]
@@ -66,7 +83,10 @@ def column(values: Any, name: str) -> Any:
 
 
 def checked(columns: list[Any]) -> list[Any]:
-    """The four columns of a chain, all of one type; raises as :class:`lagrangian.CompiledChain` says."""
+    """The four columns of a chain, or of many, all of one type; raises as :class:`lagrangian.CompiledChain` says.
+
+    Shapes: (n,); or (chains, n), float64.
+    """
     counts = [len(column) for column in columns]
     if not all(counts):
         raise SceneError("the number N of rods is positive, and a list here is empty: give at least one rod.")
@@ -78,19 +98,27 @@ def checked(columns: list[Any]) -> list[Any]:
     mass, length, center, gyration = columns
     for name, column, fine in (("mass", mass, mass >= 0), ("length", length, length > 0),
                                ("gyration", gyration, gyration > 0)):
-        wrong = np.flatnonzero(~fine.astype(bool))
-        if wrong.size:
+        for at, x in _wrong(column, fine):
             allowed = "positive or 0" if name == "mass" else "positive"
-            raise QuantityError(f"the {name} of a rod is {allowed}, and {name}[{wrong[0]}] is {column[wrong[0]]}.")
-    wrong = np.flatnonzero(~(gyration >= abs(center)).astype(bool))
-    if wrong.size:
-        i = wrong[0]
+            raise QuantityError(f"the {name} of a rod is {allowed}, and {name}{at} is {x}.")
+    for at, x in _wrong(gyration, gyration >= abs(center)):
         raise QuantityError(f"the radius of gyration about the joint is at least the distance of the centre of mass, "
-                            f"and rod {i + 1} has gyration = {gyration[i]} and center = {center[i]}: give "
-                            f"gyration >= |center|.")
-    if not any(mass > 0):
+                            f"and gyration{at} is {x} and center{at} is {center[*at]}: give gyration >= |center|.")
+    if not (mass > 0).astype(bool).any(axis=-1).all():
         raise SceneError("a chain without any mass has no equations of motion, 0 theta'' = 0: give a rod a mass.")
     return columns
+
+
+def _wrong(column: Any, fine: Any) -> Iterator[tuple[list[int], Any]]:
+    """Where, and what, the entries are that are not fine."""
+    for at in np.argwhere(~fine.astype(bool)).tolist():
+        yield at, column[*at]
+
+
+def check_damping(damping: Any) -> None:
+    """Raise QuantityError where a damper would put energy in."""
+    for at, x in _wrong(damping, damping >= 0):
+        raise QuantityError(f"joint damping takes energy out, and damping{at} is {x}: give a value >= 0.")
 
 
 def joint_constants(values: Any, name: str, count: int) -> Any:
@@ -101,20 +129,21 @@ def joint_constants(values: Any, name: str, count: int) -> Any:
     if len(found) != count:
         raise SceneError(f"{name} has one value for every joint, and here are {len(found)} values for {count} rods: "
                          f"give {count} values (0 where a joint has none).")
-    wrong = np.flatnonzero(~(found >= 0).astype(bool)) if name == "damping" else np.array([], dtype=int)
-    if wrong.size:
-        raise QuantityError(f"joint damping takes energy out, and damping[{wrong[0]}] is {found[wrong[0]]}: give a "
-                            f"value >= 0.")
+    if name == "damping":
+        check_damping(found)
     return found if any(found != 0) else None
 
 
 def check_joints(mass: Any, joints: list[Any]) -> None:
     """Raise SceneError where a joint turns a rod without mass."""
     for name, values in zip(("damping", "springs"), joints, strict=True):
-        for k in np.flatnonzero((mass == 0).astype(bool)) if values is not None else ():
-            if values[k] != 0 or (k + 1 < len(values) and values[k + 1] != 0):
-                raise SceneError(f"rod {k + 1} has no mass, and the {name} at its joints would turn it infinitely "
-                                 f"fast: give it a mass, or free its joints.")
+        if values is not None:
+            acts = (values != 0).astype(bool)
+            acts[..., :-1] |= acts[..., 1:]
+            for at, _ in _wrong(mass, ~acts | (mass != 0).astype(bool)):
+                rod = f"rod {at[-1] + 1}" + (f" of chain {at[0]}" if len(at) > 1 else "")
+                raise SceneError(f"{rod} has no mass, and the {name} at its joints would turn it infinitely fast: give "
+                                 f"it a mass, or free its joints.")
 
 
 def substitution(values: Mapping[Any, Any] | None) -> Callable[[Any], Any]:
@@ -129,3 +158,16 @@ def substitution(values: Mapping[Any, Any] | None) -> Callable[[Any], Any]:
             raise NotAQuantityError(f"values maps {symbol!r}, which is not a Symbol, to {value!r}: give Symbols.")
         numbers[symbol] = quantity(value, f"the value of {symbol}")
     return lambda expression: expression.xreplace(numbers)
+
+
+def one_by_one(values: Mapping[Any, Any] | None) -> list[Mapping[Any, Any]]:
+    """The values of every chain, where some Symbols have an array of one number a chain; empty where none has."""
+    if not isinstance(values, Mapping):
+        return []
+    many = {symbol: np.asarray(x, dtype=object) for symbol, x in values.items()
+            if isinstance(x, (np.ndarray, list, tuple))}
+    shapes = {x.shape for x in many.values()}
+    if len(shapes) > 1 or any(len(shape) != 1 or not shape[0] for shape in shapes):
+        raise SceneError(f"the chains of an ensemble have one number each for a Symbol, and here are the shapes "
+                         f"{', '.join(f'{symbol} {x.shape}' for symbol, x in many.items())}: give shape (chains,).")
+    return [{**values, **dict(zip(many, row))} for row in zip(*many.values())]

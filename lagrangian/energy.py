@@ -17,15 +17,19 @@ it and ``Scene.lagrangian``, the article's ``L[N]``, has it not.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
+import numpy as np
 from sympy import Add, Integer, cos, latex, sin
 
 from .chain import CompiledChain
-from .constants import NAMES, substitution
-from .errors import SceneError
+from .constants import NAMES, one_by_one, substitution
+from .ensemble import Ensemble
+from .errors import QuantityError, SceneError
+from .quantities import real_number, to_float
 from .scene import Arrangement
 from .shaking import shaking_of_expressions
 
@@ -192,13 +196,16 @@ class Scene(Arrangement):
         """The article's ``L[N]`` (In[16]), less the energy of springs; J."""
         return L(self)
 
-    def compile(self, values: Mapping[Any, Any] | None = None, model: str | None = None) -> CompiledChain:
+    def compile(self, values: Mapping[Any, Any] | None = None, model: str | None = None) -> CompiledChain | Ensemble:
         """This chain with numbers for its Symbols: accelerations in O(n), ready for :func:`lagrangian.simulate`.
 
         ``values`` maps Symbols to numbers, taken exactly; ``model`` as in :class:`lagrangian.CompiledChain`.  A support
-        that moves in waves, ``c cos(qt) + s sin(qt)``, or products of them, costs least.  Raises QuantityError where a
-        Symbol has no number, DriveError where the support moves by a function that is not elementary, TextError for
-        text.
+        that moves in waves, ``c cos(qt) + s sin(qt)``, or products of them, costs least.  Where Symbols of rods or
+        joints have an array of shape (chains,), the result is an :class:`lagrangian.Ensemble`, its constants rounded
+        once to float64, which takes a ms a chain.
+
+        Raises QuantityError where a Symbol has no number, or one of gravity or the support an array, DriveError where
+        the support moves by a function that is not elementary, TextError for text.
 
         >>> from sympy import symbols
         >>> from lagrangian import Rod
@@ -207,6 +214,10 @@ class Scene(Arrangement):
         >>> chain.model, chain.acceleration(0, [0.5, 0.5, 0.5], [0, 0, 0]).round(3)
         ('bobs', array([2.397, 0.   , 0.   ]))
         """
+        chains = one_by_one(values)
+        return self._ensemble(chains, model) if chains else self._chain(values, model)
+
+    def _chain(self, values: Mapping[Any, Any] | None, model: str | None) -> CompiledChain:
         replace = substitution(values)
         mass, length, center, gyration = ([replace(getattr(rod, name)) for rod in self.rods] for name in NAMES)
         damping, springs = (None if constants is None else [replace(x) for x in constants]
@@ -216,6 +227,27 @@ class Scene(Arrangement):
         shaking = shaking_of_expressions(replace(xi), replace(eta), self.t, motion)
         return CompiledChain(mass, length, center, gyration, replace(self.gravity), shaking, damping, springs,
                              self.upright, model)
+
+    def _ensemble(self, chains: Sequence[Mapping[Any, Any]], model: str | None) -> Ensemble:
+        """Every chain with values of its own, those of gravity and the support excepted."""
+        first = self._chain(chains[0], model)
+        replaced = [substitution(values) for values in chains]
+
+        @cache
+        def numbers(expression: Any) -> list[float]:
+            """For every chain."""
+            name, found = str(expression), [replace(expression) for replace in replaced]
+            return [to_float(x if x.is_Rational else real_number(x, name)) for x in found]
+
+        for shared in (self.gravity, self.support.xi, self.support.eta):
+            if len({replace(shared) for replace in replaced}) > 1:
+                raise QuantityError(f"the chains of an ensemble have one support and one gravity, and {shared} differs "
+                                    f"among these: compile a chain for each.")
+        mass, length, center, gyration = (np.array([numbers(getattr(rod, name)) for rod in self.rods]).T
+                                          for name in NAMES)
+        damping, springs = (None if constants is None else np.array([numbers(x) for x in constants]).T
+                            for constants in (self.damping, self.springs))
+        return Ensemble(mass, length, center, gyration, first.gravity, first.support, damping, springs, self.upright)
 
     def __repr__(self) -> str:
         rods = f"{len(self)} x {self.equal_rod}" if self.equal_rod and len(self) > 1 else f"{len(self)} rods"

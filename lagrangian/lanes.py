@@ -1,9 +1,9 @@
 """Many chains at once: the recursion of :mod:`lagrangian.recursion` with one chain in every lane of a vector register.
 
-The chains have the same rods and each its own state, arrays of shape (n, chains).  They are taken LANES at a
-time; whatever is carried from link to link is one flat array whose rows lie LANES apart, a constant known when
-the loops are translated, so that the compiler sees that rows do not overlap and the loop over lanes becomes
-vector instructions.
+Each chain has its own state, arrays of shape (n, chains); the rods are the same for all, or each of LANES chains has
+its own (:mod:`lagrangian.blocks`).  Chains are taken LANES at a time; whatever is carried from link to link is one flat
+array whose rows lie LANES apart, a constant known when the loops are translated, so that the compiler sees that rows do
+not overlap and the loop over lanes becomes vector instructions.
 """
 
 from __future__ import annotations
@@ -12,10 +12,20 @@ from typing import Any
 
 import numpy as np
 
-from .angles import LARGEST, difference, sines
-from .recursion import DOUBT, force, inertia, spread, spread_within, torque, turned_force, turned_inertia
+from .angles import LARGEST, difference, sines, sines_of_large_joints
+from .recursion import (
+    DOUBT,
+    accelerate_rods,
+    force,
+    inertia,
+    spread,
+    spread_within,
+    torque,
+    turned_force,
+    turned_inertia,
+)
 
-__all__ = ["LANES", "accelerate_lanes"]
+__all__ = ["LANES", "accelerate_lanes", "accelerate_rows"]
 
 LANES = 64  # 32 to 128 cost the same up to n = 100; wide rows are kinder to memory at n = 1000
 
@@ -24,9 +34,9 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                      out: Any) -> bool:
     """Write ``theta''`` of all chains to ``out``, float64 only; whether all are finite and all angles small enough.
 
-    Shapes: rods (n, 8); theta, omega, out (n, chains); tau the same or None; work (n, 8 * LANES); doubtful (chains,)
-    or None, written: whether the answer is in doubt.  All chains are
-    on one support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
+    Shapes: rods (n, 8), or (n, 8, LANES) for LANES chains; theta, omega, out (n, chains); tau the same or None; work
+    (n, 8 * LANES); doubtful (chains,) or None, written: whether the answer is in doubt.  All chains are on one support,
+    with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
     held = np.empty(10 * LANES)
@@ -48,10 +58,14 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                     o[3 * LANES + j], o[4 * LANES + j] = sines(here[j], 0.0)
             for j in range(width):
                 wrong += abs(here[j]) > 0.5 * LARGEST
-            m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
-            J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
+            if rods.ndim == 2:
+                m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
+                J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
             rate = omega[k, first:first + width]
             for j in range(width):
+                if rods.ndim == 3:
+                    m, l, I, Ic = rods[k, 0, j], rods[k, 1, j], rods[k, 2, j], rods[k, 3, j]
+                    J, It, mH, mG = rods[k, 4, j], rods[k, 5, j], rods[k, 6, j], rods[k, 7, j]
                 Puu, Pun, Pnn, Delta = held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j]
                 qn = held[5 * LANES + j]
                 r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
@@ -89,10 +103,14 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
         held[2 * LANES:7 * LANES] = 0.0  # the covariance, the largest theta''**2 and the largest variance
         for k in range(n):
             o = work[k]
-            l = rods[k, 1]
-            per_length = 1.0 / l
+            if rods.ndim == 2:
+                l = rods[k, 1]
+                per_length = 1.0 / l
             rate, result = omega[k, first:first + width], out[k, first:first + width]
             for j in range(width):
+                if rods.ndim == 3:
+                    l = rods[k, 1, j]
+                    per_length = 1.0 / l
                 s, c, tu, tn = o[3 * LANES + j], o[4 * LANES + j], held[j], held[LANES + j]
                 au, an = tu * c + tn * s, tn * c - tu * s
                 lz = l * (rate[j] * rate[j])
@@ -117,3 +135,18 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 lost = 0.0 * (held[2 * LANES + j] + held[4 * LANES + j]) != 0.0
                 doubtful[first + j] = lost or held[6 * LANES + j] > DOUBT * DOUBT * held[5 * LANES + j]
     return wrong == 0
+
+
+
+def accelerate_rows(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, out: Any) -> tuple[bool, Any]:
+    """The same by NumPy, with one chain in every entry of a row; whether all are finite, and which are in doubt.
+
+    Angles may have any size; rods (n, 8), or (n, 8, chains); theta (n,) does too.
+    """
+    n = len(theta)
+    s, c = np.empty_like(theta), np.empty_like(theta)
+    doubt = np.empty((2, *theta.shape))
+    with np.errstate(all="ignore"):
+        sines_of_large_joints(theta, s, c)
+        accelerate_rods(rods, omega * omega, tau, s, c, ax, ay, np.empty((n, 4, *theta.shape[1:])), doubt, out)
+        return bool(np.isfinite(out).all()), ~(doubt[0].max(axis=0) <= DOUBT**2 * (out * out).max(axis=0))

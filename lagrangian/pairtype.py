@@ -208,13 +208,17 @@ def pair_sines(d: Any, e: Any) -> tuple[Any, Any]:
 
 
 def _accelerations(rods: Any, damping: Any, springs: Any, theta: Any, omega: Any, ax: Any, ay: Any, out: Any) -> None:
-    """:func:`lagrangian.recursion.accelerate_rods` on pairs for float64 states, shape (n, chains), as is out."""
+    """:func:`lagrangian.recursion.accelerate_rods` on pairs for float64 states, shape (n, chains), as is out.
+
+    Rods (n, 8, chains), damping and springs (n, chains) or None.
+    """
     n = theta.shape[0]
-    constants, pull = pairs(rods), pairs(np.array([ax, ay]))
+    pull = pairs(np.array([ax, ay]))
     space = pairs(np.zeros((9, n), np.complex128))
     s, c, z, tau, found = space[0], space[1], space[2], space[3], space[4]
     work = pairs(np.zeros((n, 4), np.complex128))
     for j in range(theta.shape[1]):
+        constants = pairs(rods[:, :, j])
         moment = pair(0.0, 0.0)
         for i in range(n):
             k = n - 1 - i
@@ -226,9 +230,9 @@ def _accelerations(rods: Any, damping: Any, springs: Any, theta: Any, omega: Any
             if damping is not None or springs is not None:
                 moment = pair(0.0, 0.0)
                 if damping is not None:
-                    moment = moment + pairs(damping)[k] * (pair(omega[k, j], 0.0) - rate)
+                    moment = moment + pairs(damping)[k, j] * (pair(omega[k, j], 0.0) - rate)
                 if springs is not None:
-                    moment = moment + pairs(springs)[k] * pair(d, e)
+                    moment = moment + pairs(springs)[k, j] * pair(d, e)
                 tau[k] = tau[k] - moment
         if damping is not None or springs is not None:
             accelerate_rods(constants, z, tau, s, c, pull[0], pull[1], work, None, found)

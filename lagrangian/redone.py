@@ -17,12 +17,12 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from .angles import LARGEST
+from .angles import LARGEST, difference, product
 from .arithmetic import MPNumbers
 from .machine import has_numba
-from .pairs import to_pairs
+from .pairs import added, multiplied, subtracted, to_pairs
 
-__all__ = ["FINE", "constants_in_pairs", "in_pairs"]
+__all__ = ["FINE", "constants_in_pairs", "in_pairs", "rows_in_pairs"]
 
 DIGITS = 150  # and the products of four floats are exact
 WIDEST = 1e40  # of a constant, and its inverse the smallest: five of them multiplied stay far within float64
@@ -44,20 +44,36 @@ def _translated() -> Callable[..., None]:
 
 
 def constants_in_pairs(rods: Any, joints: Any) -> Any:
-    """Rods, damping and springs, mpmath numbers of FINE, as pairs; None where these have not the range."""
-    rods, *joints = (None if part is None else to_pairs(part) for part in (rods, *joints))
-    size = abs(rods.real[rods.real != 0])
-    return (rods, *joints) if size.max() < WIDEST and size.min() > 1 / WIDEST else None
+    """Rods, damping and springs of one chain, mpmath numbers of FINE, as pairs; shapes (n, 8, 1), (n, 1) or None."""
+    return [None if part is None else to_pairs(part)[..., None] for part in (rods, *joints)]
+
+
+def rows_in_pairs(m: Any, l: Any, H: Any, R: Any) -> Any:
+    """The constants of :func:`lagrangian.constants.rod_row` from float64, (n, chains), as pairs, (n, 8, chains).
+
+    Only differences of exact products and their products are rounded, so that each is right to some 31 digits.
+    """
+    RR, none = product(R, R), 0.0 * m
+    spin, coupling = subtracted(*RR, *product(H, H)), subtracted(*RR, *product(H, l))
+    beyond = difference(l, H)
+    Ic = multiplied(m, none, *spin)
+    turned = added(*Ic, *multiplied(m, none, *multiplied(*beyond, *beyond)))
+    rows = [(m, none), (l, none), multiplied(m, none, *RR), Ic, multiplied(m, none, *coupling), turned, product(m, H),
+            multiplied(m, none, *beyond)]
+    return np.stack([high + 1j * low for high, low in rows], axis=1)
 
 
 def in_pairs(constants: Any, pull: Any, theta: Any, omega: Any) -> Any:
     """``theta''`` of states (n, chains) in double-double, rounded to float64; None where that has not the range.
 
-    ``constants`` are those of :func:`constants_in_pairs`; ``pull`` two numbers of FINE, or floats.
+    ``constants``: rods (n, 8, chains), damping and springs (n, chains) or None, in pairs, or 1 in place of chains where
+    all have the same; ``pull`` two numbers of FINE, or floats.
     """
-    if constants is None or not has_numba() or not abs(theta).max() < 0.5 * LARGEST:
+    size = abs(constants[0].real[constants[0].real != 0])
+    if not has_numba() or not (1 / WIDEST < size.min() <= size.max() < WIDEST and abs(theta).max() < 0.5 * LARGEST):
         return None
     ax, ay = to_pairs(pull)
     out = np.empty(theta.shape)
-    _translated()(*constants, theta, omega, ax, ay, out)
+    each = [None if x is None else np.broadcast_to(x, (*x.shape[:-1], theta.shape[1])) for x in constants]
+    _translated()(*each, theta, omega, ax, ay, out)
     return out if np.isfinite(out).all() else None

@@ -12,7 +12,7 @@ import numpy as np
 from .errors import SceneError
 from .quantities import real_number, refuse_text, to_float
 
-__all__ = ["exact_states", "float_state", "float_states", "float_time", "is_plain", "why_no_answer"]
+__all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "why_no_answer"]
 
 FLOAT64 = np.dtype(np.float64)
 PLAIN_TIMES = (float, int, np.float64)
@@ -29,13 +29,8 @@ def float_time(t: Any) -> float:
     return t if type(t) in PLAIN_TIMES else to_float(real_number(t, "t"))
 
 
-def float_state(values: Any, name: str, n: int) -> Any:
-    """Angles or rates as contiguous float64, shape (n,) or (n, chains).
-
-    Raises SceneError for another shape; TextError, NotAQuantityError, QuantityError for what are no real numbers.
-    """
-    if type(values) is np.ndarray and values.dtype is FLOAT64 and values.shape == (n,) and values.flags.c_contiguous:
-        return values
+def floats(values: Any, name: str) -> Any:
+    """Real numbers of any kind, in nested lists or an array, as contiguous float64 of the same shape."""
     refuse_text(values, name)
     try:
         array = np.asarray(values)
@@ -43,8 +38,19 @@ def float_state(values: Any, name: str, n: int) -> Any:
         array = np.asarray(values, dtype=object)
     if array.dtype.kind not in "fiu":
         array = np.array([to_float(real_number(x, name)) for x in array.flat]).reshape(array.shape)
+    return np.asarray(array, FLOAT64, order="C")
+
+
+def float_state(values: Any, name: str, n: int) -> Any:
+    """Angles or rates as contiguous float64, shape (n,) or (n, chains).
+
+    Raises SceneError for another shape; TextError, NotAQuantityError, QuantityError for what are no real numbers.
+    """
+    if type(values) is np.ndarray and values.dtype is FLOAT64 and values.shape == (n,) and values.flags.c_contiguous:
+        return values
+    array = floats(values, name)
     _check_shape(array, name, n)
-    return np.ascontiguousarray(array, FLOAT64)
+    return array
 
 
 def float_states(theta: Any, omega: Any, n: int) -> tuple[Any, Any]:

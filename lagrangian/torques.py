@@ -12,7 +12,7 @@ from .angles import difference, product
 from .machine import inlined
 from .stepper import total
 
-__all__ = ["exact_torques", "joint_torques", "joint_torques_of_many"]
+__all__ = ["exact_torques", "joint_torques", "joint_torques_of_each", "joint_torques_of_many"]
 
 
 def exact_torques(theta: Any, omega: Any, damping: Any, springs: Any) -> Any:
@@ -61,3 +61,10 @@ def joint_torques_of_many(theta: Any, omega: Any, damping: Any, springs: Any, ta
     """The same for many chains, one after the other, in machine code."""
     for j in range(theta.shape[1]):
         joint_torques(theta[:, j], omega[:, j], damping, springs, tau[:, j])
+
+
+def joint_torques_of_each(theta: Any, omega: Any, damping: Any, springs: Any, tau: Any) -> None:
+    """The same for chains with joints of their own: all shapes (chains, n), damping and springs may be None."""
+    for j in range(theta.shape[0]):
+        joint_torques(theta[j], omega[j], None if damping is None else damping[j],
+                      None if springs is None else springs[j], tau[j])

@@ -325,7 +325,7 @@ def test_model_is_the_least_that_the_chain_requires():
     (([-1.0], [1.0], [0.0], [1.0]), QuantityError, ["mass", "-1.0"]),
     (([1], [1], [2], [1]), QuantityError, ["gyration", "2"]),
     (([1, 1], [1], [1], [1]), SceneError, ["2 x mass", "1 x length"]),
-    ((np.ones((2, 3)), [1, 1], [1, 1], [1, 1]), SceneError, ["mass", "(2, 3)", "same rods", "one CompiledChain"]),
+    ((np.ones((2, 3)), [1, 1], [1, 1], [1, 1]), SceneError, ["mass", "(2, 3)", "give Ensemble"]),
     (([0, 0], [1, 1], [1, 1], [1, 1]), SceneError, ["without any mass"]),
     (([float("nan")], [1], [1], [1]), QuantityError, ["finite"]),
     (([symbols("m")], [1], [1], [1]), QuantityError, ["Symbol m"]),
