@@ -37,6 +37,7 @@ from .linearize import FirstOrderSystem, LinearEquations, linearize
 from .normal_modes import NormalModes, normal_modes
 from .scene import Rod, Support
 from .simulate import simulate
+from .trajectories import Trajectories
 from .trajectory import Trajectory
 
 __all__ = [
@@ -64,6 +65,7 @@ __all__ = [
     "SceneError",
     "Support",
     "TextError",
+    "Trajectories",
     "Trajectory",
     "compile_equations",
     "euler_lagrange",

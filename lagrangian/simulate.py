@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from math import ceil, log10
 from numbers import Integral
@@ -26,6 +26,7 @@ from .compiled import CompiledEquations, compile_equations
 from .crossings import Crossing, checked, find_crossings
 from .digits import DigitRun, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
+from .ensemble import Ensemble
 from .equations import EquationsOfMotion
 from .errors import DriveError, NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
@@ -33,6 +34,7 @@ from .pieces import BallPieces, FloatPieces
 from .quantities import quantity, refuse_text
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .swings import swing
+from .trajectories import Trajectories, chains_and_states
 from .trajectory import Trajectory
 
 __all__ = ["simulate"]
@@ -42,16 +44,19 @@ SAFETY = 6.0
 FLOAT_LIMIT = 1e-14  # accuracies below it need more digits than float64 has
 
 
-def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, theta0: Any, omega0: Any, times: Any,
-             accuracy: float = 1e-10, method: str = "taylor", digits: int | None = None, dense: bool = False,
-             events: Mapping[str, Crossing] | None = None,
-             progress: bool | Callable[[float], None] = False) -> Trajectory:
+def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEquations, theta0: Any, omega0: Any,
+             times: Any, accuracy: float = 1e-10, method: str = "taylor", digits: int | None = None,
+             dense: bool = False, events: Mapping[str, Crossing] | None = None,
+             progress: bool | Callable[[float], None] = False) -> Trajectory | Trajectories:
     """The motion from ``theta0, omega0`` at ``times[0]``, at all ``times``, as a :class:`Trajectory`.
+
+    Many at once are followed one after the other, and given as :class:`Trajectories`: those of an :class:`Ensemble`, or
+    of one chain from many states, shape (chains, n).
 
     Parameters
     ----------
-    system : a :class:`CompiledChain`, or :func:`euler_lagrange` equations without free Symbols
-    theta0, omega0 : n numbers each, floats or exact (``pi/2`` is pi/2); rad, rad/s
+    system : a :class:`CompiledChain`, an :class:`Ensemble`, or :func:`euler_lagrange` equations without free Symbols
+    theta0, omega0 : n numbers each, floats or exact (``pi/2`` is pi/2), or shape (chains, n); rad, rad/s
     times : m monotone times, growing or shrinking (the motion is followed backwards); s
     accuracy : largest error of any angle that is wanted; rad.  Below 1e-14 numbers of enough digits are used
     method : ``"taylor"``, a method of SciPy's ``solve_ivp`` (``"DOP853"``, ...), ``"heyoka"`` if installed, or
@@ -87,6 +92,26 @@ def simulate(system: CompiledChain | EquationsOfMotion | CompiledEquations, thet
     >>> motion.accurate, motion.theta.shape, motion.energy_drift < 1e-13
     (True, (3, 2), True)
     """
+    if not isinstance(system, Ensemble):
+        _, system = _system(system)  # equations are compiled once, for however many chains
+    times = list(times) if isinstance(times, Iterator) else times
+    follow = partial(_motion, times=times, accuracy=accuracy, method=method, digits=digits, dense=dense, events=events,
+                     progress=progress)
+    many = chains_and_states(system, theta0, omega0)
+    return follow(system, theta0, omega0) if many is None else Trajectories(tuple(_motions(follow, many)))
+
+
+def _motions(follow: Callable[..., Trajectory], many: list[tuple[Any, Any, Any]]) -> Iterator[Trajectory]:
+    for j, one in enumerate(many):
+        try:
+            yield follow(*one)
+        except QuantityError as error:
+            raise QuantityError(f"chain {j}: {error}") from None
+
+
+def _motion(system: Any, theta0: Any, omega0: Any, times: Any, accuracy: Any, method: str, digits: int | None,
+            dense: bool, events: Mapping[str, Crossing] | None, progress: Any) -> Trajectory:
+    """:func:`simulate` for one chain."""
     chain, evaluated = _system(system)
     n = len(chain)
     times, given_times = _times(times)
@@ -313,7 +338,7 @@ def _initial(values: Any, name: str, n: int) -> Any:
         if not np.isfinite(found).all():
             raise QuantityError(f"{name} holds {found[~np.isfinite(found)].flat[0]}, which is not finite: give finite "
                                 f"numbers.")
-    elif np.ndim(values) == 0 and isinstance(values, np.ndarray):
+    elif isinstance(values, np.ndarray) and values.ndim == 0:
         raise SceneError(f"{name} is the single number {values}: give one number for each of the {n} rods.")
     else:
         found = _quantities(values, name, f"one number for each of the {n} rods")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from .errors import QuantityError
 from .optional import optional
 from .plotting import plot
 
-__all__ = ["Trajectory"]
+__all__ = ["Trajectory", "labelled", "locked"]
 
 ARRAYS = ("times", "theta", "omega", "turns", "wrapped", "energy", "error")
 
@@ -54,8 +54,8 @@ class Trajectory:
 
     def __post_init__(self) -> None:
         for name in ARRAYS:
-            object.__setattr__(self, name, _locked(getattr(self, name)))
-        object.__setattr__(self, "events", {name: _locked(times) for name, times in self.events.items()})
+            object.__setattr__(self, name, locked(getattr(self, name)))
+        object.__setattr__(self, "events", {name: locked(times) for name, times in self.events.items()})
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -123,14 +123,7 @@ class Trajectory:
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` over time and rod (1, ..., n); raises NotInstalledError without xarray."""
-        xarray = optional("xarray", "a motion as a labelled data set")
-        rod = np.arange(1, self.theta.shape[1] + 1)
-        units = {"theta": "rad", "omega": "rad/s", "energy": "J", "error": "rad"}
-        variables = {name: (("time", "rod")[:getattr(self, name).ndim], getattr(self, name).copy(),
-                            {"units": units[name]} if name in units else {})
-                     for name in ("theta", "omega", "turns", "energy", "error")}
-        notes = {"method": self.method, "accuracy": self.accuracy, "verdict": self.verdict, "model": self.chain.model}
-        return xarray.Dataset(variables, {"time": self.times, "rod": rod}, notes)
+        return labelled(self, [self], ("time", "rod"))
 
     def plot(self, axes: Any = None) -> Any:
         """Angles over time, and the estimated error below them; returns the matplotlib figure."""
@@ -151,7 +144,20 @@ class Trajectory:
                 f"steps, error {float(self.error[-1]):.1e} rad)")
 
 
-def _locked(array: Any) -> Any:
+def labelled(motion: Any, members: Sequence[Trajectory], axes: tuple[str, ...]) -> Any:
+    """The arrays of a motion, or of many, over these axes as an ``xarray.Dataset``."""
+    xarray = optional("xarray", "a motion as a labelled data set")
+    units = {"theta": "rad", "omega": "rad/s", "energy": "J", "error": "rad"}
+    variables = {name: (axes[:getattr(motion, name).ndim], getattr(motion, name).copy(),
+                        {"units": units[name]} if name in units else {})
+                 for name in ("theta", "omega", "turns", "energy", "error")}
+    places = {"chain": np.arange(len(members)), "time": motion.times, "rod": np.arange(1, motion.theta.shape[-1] + 1)}
+    notes = {"method": "; ".join(sorted({one.method for one in members})), "accuracy": members[0].accuracy,
+             "verdict": motion.verdict, "model": "; ".join(sorted({one.chain.model for one in members}))}
+    return xarray.Dataset(variables, {axis: places[axis] for axis in axes}, notes)
+
+
+def locked(array: Any) -> Any:
     """The same array, read only."""
     found = np.asarray(array).view()
     found.flags.writeable = False
