@@ -216,7 +216,7 @@ def motions() -> None:
         ours = least(mine, 3.0)
         print(f"n = {n}: ours {1e3 * ours:.3g} ({wrong(mine().theta[-1])}), {mine().steps} steps")
         whole = least(lambda: simulate(chain, theta, omega, times), 2.0)
-        print(f"   simulate(...), which runs it again to know its error: {1e3 * whole:.3g} ({whole / ours:.3g}x)")
+        print(f"   simulate(...), which runs it three times to know its error: {1e3 * whole:.3g} ({whole / ours:.3g}x)")
         if n <= 2:
             scene = Scene([Rod.bob(1, 1)] * n, gravity=GRAVITY, upright=False)
             dense = compile_equations(euler_lagrange(scene))

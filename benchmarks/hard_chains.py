@@ -1,11 +1,14 @@
 """How often a random hard chain loses digits: theta'' against 300 digits, and what the data are worth.
 
     python benchmarks/hard_chains.py [6000]
+    python benchmarks/hard_chains.py motions [200]
 
 The chains are those of ``tests/extremes/test_chains.py``, one to twelve rods with gravity.  Beside what
 ``acceleration`` gives stands the recursion in float64 alone, and how many answers it left in doubt, which are found
 again (``lagrangian/redone.py``); for chains of ordinary rods too.  Beside the worst errors stands how far the exact
 answer moves if every number of the chain and its state goes to a next float.  Last, what finding again costs.
+
+Motions of such chains, one to six rods: how far angles are from 26 digits, over the error that they state.
 """
 
 from __future__ import annotations
@@ -19,11 +22,13 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from lagrangian import CompiledChain
-from tests.extremes.test_chains import KINDS, dense, error, hard_chain, moved
+from lagrangian import CompiledChain, QuantityError, simulate
+from tests.extremes.test_chains import KINDS, dense, error, hard_chain, hard_motion, moved, part_of_the_stated_error
 
 
 def main() -> None:
+    if sys.argv[1:2] == ["motions"]:
+        return motions(int(sys.argv[2]) if len(sys.argv) > 2 else 200)
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 6000
     report("hard", count, KINDS)
     report("ordinary", count, ["nothing"])
@@ -60,6 +65,22 @@ def costs() -> None:
         works = (partial(even.acceleration, 0, *state), partial(uneven.acceleration, 0, *state),
                  partial(uneven._again, 0, theta, omega))
         print(f"   n = {n}, chains: {chains}: " + ", ".join(f"{least(work):.1f}" for work in works))
+
+
+def motions(count: int) -> None:
+    found, refused = [], 0
+    for seed in range(count):
+        arguments = hard_motion(seed)
+        try:
+            motion, true = (simulate(*arguments, digits=digits) for digits in (None, 26))
+        except QuantityError:
+            refused += 1
+            continue
+        found.append((part_of_the_stated_error(motion, true), motion.error[-1], KINDS[seed % len(KINDS)], seed))
+    print(f"{len(found)} motions of hard chains, {refused} refused: at most {max(found)[0]:.2g} of the stated error, "
+          f"median {np.median([x[0] for x in found]):.2g}; the worst:")
+    for part, stated, kind, seed in sorted(found, reverse=True)[:4]:
+        print(f"   {part:.2g} of {stated:.1e}, {len(hard_motion(seed)[0])} rods, {kind}, seed {seed}")
 
 
 def least(function: Callable[[], object]) -> float:
