@@ -36,7 +36,7 @@ from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
 from fastpicard.ring import ONE, Polynomial, multiply, symbols_of
-from fastpicard.spectrum import Multiplier, general_multipliers, reciprocal_multipliers, symplectic_forms
+from fastpicard.spectrum import Multiplier, general_multipliers, keeps_area, reciprocal_multipliers, symplectic_forms
 from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
@@ -336,7 +336,8 @@ class FloquetMatrix:
     def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, list[Any]]:
         """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic forms."""
         forms = symplectic_forms(self.P, exact)
-        return bool(forms) or (self.shape[0] % 2 == 0 and self.at(exact)[0].reversal is not None), forms
+        reverses = self.shape[0] % 2 == 0 and self.at(exact)[0].reversal is not None
+        return bool(forms) or reverses or keeps_area(self.P, exact), forms
 
     def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
         """The eigenvalues of the true Floquet matrix, complex or mpc, sorted by modulus, largest first.

@@ -40,7 +40,7 @@ from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Linear, Modes, orient
 from fastpicard.period import turns_of, whole_turns
 from fastpicard.ring import ONE, Polynomial, multiply, to_expression
-from fastpicard.spectrum import symplectic_forms
+from fastpicard.spectrum import keeps_area, symplectic_forms
 
 Signs = tuple[int, ...]
 
@@ -72,10 +72,11 @@ def _backwards(modes: Modes) -> Modes:
 def pairs(P: SeriesMatrix) -> tuple[bool, Any]:
     """Whether multipliers come in pairs lambda, 1/lambda at all parameters, and a symplectic form, if there is one.
 
-    They do where ``P`` is Hamiltonian, or reverses in time and has even size.
+    They do where ``P`` is Hamiltonian, or reverses in time and has even size, or is 2 x 2 and the mean of its trace 0.
     """
     forms = symplectic_forms(P, {})
-    return bool(forms) or P.shape[0] % 2 == 0 and reversal(P) is not None, forms[0] if forms else None
+    reverses = P.shape[0] % 2 == 0 and reversal(P) is not None
+    return bool(forms) or reverses or keeps_area(P, {}), forms[0] if forms else None
 
 
 def half_period(F: FloquetMatrix) -> list[list[Modes]]:

@@ -2,9 +2,9 @@ r"""Multipliers in balls, with the symmetry that the equation has, kept exactly.
 
 If a constant, regular, antisymmetric ``W`` makes ``W P(t)`` symmetric at all times
 (``P`` is Hamiltonian), ``Phi(T)' W Phi(T) = W``: with every multiplier ``lambda`` also
-``1/lambda`` is one.  The same follows from reversal, ``s P(-t) s = -P(t)``.  Then the
-characteristic polynomial is palindromic, and in ``rho = lambda + 1/lambda`` it is a
-polynomial ``p`` of half the degree,
+``1/lambda`` is one.  The same follows from reversal, ``s P(-t) s = -P(t)``, and for two by two from
+``det Phi(T) = exp(integral of trace P) = 1`` (Liouville).  Then the characteristic polynomial is
+palindromic, and in ``rho = lambda + 1/lambda`` it is a polynomial ``p`` of half the degree,
 
     chi(lambda)/lambda**m = p(rho) = c_m + sum_k c_{m-k} D_k(rho),
     D_0 = 2,  D_1 = rho,  D_{k+1} = rho D_k - D_{k-1}        (D_k = lambda**k + lambda**-k).
@@ -53,6 +53,12 @@ def symplectic_forms(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[Any]:
         if basis and form.det() != 0:
             return [form, *basis]
     return []
+
+
+def keeps_area(P: SeriesMatrix, values: Mapping[Any, Any]) -> bool:
+    """Whether ``P`` is 2 x 2 and the mean of its trace vanishes, so that the determinant of ``Phi(T)`` is 1."""
+    still = [A for (_, (frequency, _), _), A in coefficients(P, values).items() if not frequency]
+    return P.shape == (2, 2) and all(A.get((0, 0), fmpq(0)) + A.get((1, 1), fmpq(0)) == 0 for A in still)
 
 
 def _antisymmetric(vector: list[Any], size: int, places: list[tuple[int, int]]) -> Any:
@@ -154,10 +160,30 @@ class Disc:
 
 
 def root_discs(p: Any) -> list[Disc]:
-    """Discs around the roots of a monic polynomial with real balls as coefficients."""
-    degree = p.degree()
-    centers = _approximate_roots(p)
-    radii = []
+    """Discs around the roots of a monic polynomial with real balls as coefficients.
+
+    Approximations of roots that coincide may be nearer to each other than the balls allow; their discs are huge then.
+    Those of the polynomial at an edge of the balls are as far apart as the balls leave open.
+    """
+    found = _discs(p, _approximate_roots(p))
+    if all(d.alone for d in found):
+        return found
+    return min(found, _discs(p, _approximate_roots(_at_an_edge(p))), key=_largest)
+
+
+def _at_an_edge(p: Any) -> Any:
+    """Every coefficient moved up inside its ball, each by another part of the radius, so that no root stays double."""
+    coefficients = p.coeffs()
+    return arb_poly([c.mid() + c.rad() * (k + 1) / len(coefficients) for k, c in enumerate(coefficients)])
+
+
+def _largest(discs: list[Disc]) -> Any:
+    return max(d.radius for d in discs)
+
+
+def _discs(p: Any, centers: list[Any]) -> list[Disc]:
+    """The discs around these approximations."""
+    degree, radii = p.degree(), []
     for i, z in enumerate(centers):
         distance = arb(1)
         for j, w in enumerate(centers):

@@ -3,7 +3,7 @@ r"""Stable, unstable or undecided: verdicts with the sentence that proves them.
 The zero solution of ``x' = P(t) x`` is *stable* if all solutions stay bounded for ``t >= 0``.
 From a matrix of balls that contains the true ``M = Phi(T)``:
 
-Where multipliers come in pairs ``lambda, 1/lambda`` (Hamiltonian or reversible ``P``), with
+Where multipliers come in pairs ``lambda, 1/lambda`` (Hamiltonian or reversible ``P``; 2 x 2, determinant 1), with
 ``p`` the characteristic polynomial in ``rho = lambda + 1/lambda``:
 
 - a root of ``p`` off the real interval [-2, 2] is a multiplier outside the unit circle: unstable.
@@ -16,7 +16,8 @@ Where multipliers come in pairs ``lambda, 1/lambda`` (Hamiltonian or reversible 
 
 For every other ``P``, by Schur and Cohn: the polynomial ``a_n z**n + ... + a_0`` has all roots inside the
 unit circle exactly if ``|a_0| < |a_n|`` and ``(a_n a(z) - a_0 z**n a(1/z))/z`` has.  If all are inside, the
-zero solution is asymptotically stable; if a step has ``|a_0| > |a_n|``, some root is outside: unstable.
+zero solution is asymptotically stable; if a step has ``|a_0| > |a_n|``, some root is outside: unstable.  Where a step
+cannot tell them apart, as when all multipliers have the product 1, a root may still be enclosed outside.
 """
 
 from __future__ import annotations
@@ -202,8 +203,17 @@ def schur_cohn(matrix: Any) -> Verdict:
             return Verdict.UNSTABLE.because(
                 "by Schur and Cohn a root of the characteristic polynomial is outside the unit circle: a step has "
                 f"|a_0| = {abs(a[0]).str(8)} > |a_n| = {abs(a[-1]).str(8)}")
+        elif (outside := next(iter(_outside(matrix.charpoly())), None)) is not None:
+            return Verdict.UNSTABLE.because(f"a multiplier is in the disc {outside}, outside the unit circle")
         else:
             return Verdict.UNDECIDED.because(
                 f"a step of Schur and Cohn cannot tell |a_0| = {abs(a[0]).str(8)} from |a_n| = {abs(a[-1]).str(8)}")
     return Verdict.STABLE.because("by Schur and Cohn all multipliers are strictly inside the unit circle: the zero "
                                   "solution is asymptotically stable")
+
+
+def _outside(p: Any) -> list[str]:
+    """The discs of clusters of roots that lie outside the unit circle with all of their discs."""
+    discs = root_discs(p)
+    inside = {d.cluster for d in discs if not abs(d.center) - d.radius > 1}
+    return [_place(d) for d in discs if d.cluster not in inside]

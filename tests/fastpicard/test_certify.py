@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given, settings, strategies as st
-from sympy import Matrix, Rational, cos, sin, sqrt
+from sympy import Matrix, Rational, cos, pi, sin, sqrt
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, Verdict, boundaries, certify
@@ -330,3 +330,14 @@ def test_local_models_contain_the_polynomial(numbers, x, y, s, u):
     value = sum(numbers[4 * i + j] * at[0]**i * at[1]**j for i in range(4) for j in range(4))
 
     assert enclosed(Models(3, found.c[:, 0], found.e[0]), s, u, value)
+
+
+def test_a_trace_of_mean_zero_is_certified_by_the_trace():
+    """Neither Hamiltonian nor reversible, but of determinant 1: there are stable areas, which no damping makes."""
+    w = 2 * pi
+    F = FloquetMatrix(Matrix([[b * cos(w * t), 1], [-a - b * cos(w * t), sin(w * t) / 2]]), t, 0, 1)
+    chart = certify(F, (a, -0.5, 0.5), (b, 0, 1), seconds=60, undecided=0.02)
+
+    assert chart.undecided < 0.02
+    assert chart.fraction(Verdict.STABLE) > 0.3 and chart.fraction(Verdict.UNSTABLE) > 0.3
+    assert not disagreements(chart, F, 30)

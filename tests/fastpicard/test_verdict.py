@@ -1,6 +1,7 @@
 """Verdicts and multipliers of the true equation: reference points, laws, and what must never be claimed."""
 
 import cmath
+import math
 import pickle
 
 import mpmath
@@ -341,3 +342,44 @@ def test_a_value_close_to_a_pole_is_none():
     found = F.enclosure({a: near, b: Rational((near - pi).evalf(60)) / 5}, 5)
 
     assert found.overlaps(MATHIEU.enclosure({a: Rational(1, 5), b: 1}, 5))
+
+
+AREA = FloquetMatrix(Matrix([[b * cos(2 * t), 1 + sin(t)], [-a - b * cos(t), cos(t)]]), t, 0)
+
+
+@pytest.mark.parametrize("constant", [Rational(-1, 4), Rational(1, 4), Rational(3, 4)])
+def test_a_trace_of_mean_zero_is_enough_for_the_determinant_to_be_one(constant):
+    """P is neither Hamiltonian nor reversible, but det Phi = exp(integral of trace P) = 1: the trace decides."""
+    values = {a: constant, b: Rational(1, 3)}
+    verdict, trace = AREA.verdict(values), float(AREA.enclosure(values).trace().mid())
+
+    assert verdict == (Verdict.STABLE if abs(trace) < 2 else Verdict.UNSTABLE)
+    assert abs(math.prod(AREA.multipliers(values)) - 1) < 1e-15
+    assert {m.on_unit_circle for m in AREA.multiplier_enclosures(values)} == {abs(trace) < 2}
+
+
+def test_the_mean_of_the_trace_may_vanish_at_some_values_only():
+    """With c = 0 the determinant is 1 and the trace decides; with c > 0 it is damped."""
+    F = FloquetMatrix(Matrix([[cos(t), 1], [-a - b * sin(2 * t), -c]]), t, 0)
+    values = {a: Rational(1, 3), b: Rational(1, 10)}
+
+    assert "determinant is 1" in F.verdict({**values, c: 0}).reason
+    assert "Schur and Cohn" in F.verdict({**values, c: Rational(1, 10)}).reason
+
+
+def test_a_product_of_multipliers_of_modulus_one_does_not_hide_one_outside():
+    """Mathieu's unstable equation beside a third multiplier 1: Schur and Cohn's first step is 1 against 1."""
+    P = Matrix([[0, 1, cos(t)], [-a - b * cos(t), 0, 1], [0, 0, cos(t)]])
+
+    assert FloquetMatrix(P, t, 0).verdict({a: Rational(1, 4), b: Rational(1, 5)}) == Verdict.UNSTABLE
+    assert FloquetMatrix(P, t, 0).verdict({a: Rational(1, 3), b: Rational(1, 10)}) == Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize("entries", [[cos(t), 0, sin(t)], [cos(t), 1, sin(2 * t)], [cos(t) - 1, 0, sin(t) - 1]])
+def test_multipliers_that_coincide_exactly_have_digits(entries):
+    """The approximations of a double root fall together, on the root itself; the disc around them need not be huge."""
+    P = Matrix([[entries[0], entries[1]], [0, entries[2]]])
+    expected = mpmath.exp(2 * mpmath.pi * entries[0].subs(t, pi / 2))
+
+    for found in FloquetMatrix(P, t, 0).multipliers({}, digits=12):
+        assert abs(found - expected) < 1e-11 * expected
