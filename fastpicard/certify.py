@@ -13,6 +13,7 @@ leave out, rounding.  A rectangle that is decided is decided for every point in 
 
 from __future__ import annotations
 
+import numbers
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -25,7 +26,7 @@ from fastpicard import plotting
 from fastpicard.charted import Axis, Charted, images, read_chart
 from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
@@ -201,6 +202,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     Verdict.STABLE
     """
     start = time.perf_counter()
+    seconds, undecided = _limit(seconds, "seconds"), _limit(undecided, "undecided")
     chart = read_chart(F, x, y, fixed, modes)
     rule = criterion(chart.F)
     boxes, done = _by_convexity(chart)
@@ -211,6 +213,16 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
         state.until = time.perf_counter() + seconds
         state.refine(_chunks(state, boxes, local))
     return _result(state, order, error)
+
+
+def _limit(value: Any, name: str) -> float:
+    """A number from 0 up, infinity too."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Real):
+        raise BadTypeError(f"{name} must be a number, but it is {value!r}, a {type(value).__name__}.  "
+                           f"Use {name}=1.")
+    if not float(value) >= 0:
+        raise BadInputError(f"{name} must be 0 or more, but it is {value}.  Use 10 seconds and undecided=1e-4, say.")
+    return float(value)
 
 
 def _result(state: Halving, order: int, error: float) -> CertifiedChart:

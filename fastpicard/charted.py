@@ -190,10 +190,14 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     if first.symbol == second.symbol:
         raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two.")
     numbers = {s: _exact_expression(value, s) for s, value in (fixed or {}).items()}
-    if numbers:
-        F = with_values(F, numbers)
     decoupled = modes is not None
     given = list(modes) if decoupled else [{s: s for s in (first.symbol, second.symbol)}]
+    for s in (first.symbol, second.symbol, *(s for mode in given if isinstance(mode, Mapping) for s in mode)):
+        if s in numbers:
+            raise BadInputError(f"a parameter has one value, but {s} is fixed at {numbers[s]} and is also on an axis "
+                                "or given by the modes.  Leave it out of fixed.")
+    if numbers:
+        F = with_values(F, numbers)
     members = tuple(_member(mode, numbers, first.symbol, second.symbol) for mode in given)
     for member in members:
         missing = sorted((s for s in parameters(F) if s not in member), key=str)

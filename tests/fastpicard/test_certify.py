@@ -248,6 +248,11 @@ def test_progress_is_reported():
     ((a, 0, 1), (h, 0, 1), {}, MissingParameterError, "fixed"),
     ((h, 0, 1), (v, 0, 1), {"modes": [{a: -1 / v**2, b: h}]}, BadInputError, "positive"),
     ((h, 0, 1), (v, 1, 2), {"modes": [{a: -1 / v**2 + h, b: h}]}, BadInputError, "powers"),
+    ((a, 0, 1), (b, 0, 1), {"fixed": {a: 3}}, BadInputError, "fixed at 3 and is also on an axis"),
+    ((h, 0, 1), (v, 1, 2), {"modes": [{a: -1 / v**2, b: h}], "fixed": {b: 1}}, BadInputError, "given by the modes"),
+    ((a, 0, 1), (b, 0, 1), {"seconds": None}, BadTypeError, "seconds must be a number"),
+    ((a, 0, 1), (b, 0, 1), {"seconds": -1}, BadInputError, "seconds must be 0 or more"),
+    ((a, 0, 1), (b, 0, 1), {"undecided": float("nan")}, BadInputError, "undecided must be 0 or more"),
 ])
 def test_what_is_no_chart_is_refused(x, y, more, error, words):
     """With what would do."""
