@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from sympy import Symbol
+from sympy.core.relational import Relational
 
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
@@ -71,7 +72,7 @@ def column(values: Any, name: str) -> Any:
             bad = values[~np.isfinite(values)][0]
             raise QuantityError(f"{name} holds {bad}, which is not finite: give finite numbers.")
         return values.astype(np.float64)
-    if isinstance(values, (int, float)) or not isinstance(values, Iterable):
+    if isinstance(values, (int, float)) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) == 0:
         raise NotAQuantityError(f"{name} is {values!r}: give a list with one {name} for each rod.")
     found = list(values)
     if all(type(x) is float for x in found):
@@ -101,7 +102,7 @@ def checked(columns: list[Any]) -> list[Any]:
         for at, x in _wrong(column, fine):
             allowed = "positive or 0" if name == "mass" else "positive"
             raise QuantityError(f"the {name} of a rod is {allowed}, and {name}{at} is {x}.")
-    for at, x in _wrong(gyration, gyration >= abs(center)):
+    for at, x in _wrong(gyration, ~_shorter(gyration, abs(center))):
         raise QuantityError(f"the radius of gyration about the joint is at least the distance of the centre of mass, "
                             f"and gyration{at} is {x} and center{at} is {center[*at]}: give gyration >= |center|.")
     if not (mass > 0).astype(bool).any(axis=-1).all():
@@ -119,6 +120,17 @@ def check_damping(damping: Any) -> None:
     """Raise QuantityError where a damper would put energy in."""
     for at, x in _wrong(damping, damping >= 0):
         raise QuantityError(f"joint damping takes energy out, and damping{at} is {x}: give a value >= 0.")
+
+
+def _shorter(left: Any, right: Any) -> Any:
+    """Where ``left < right``; SymPy leaves that open for equal numbers such as ``sin(1)**2 + cos(1)**2`` and 1."""
+    if left.dtype != object:
+        return left < right
+
+    def is_shorter(x: Any, y: Any) -> bool:
+        relation = x < y
+        return not isinstance(relation, Relational) and bool(relation)
+    return np.frompyfunc(is_shorter, 2, 1)(left, right).astype(bool)
 
 
 def joint_constants(values: Any, name: str, count: int) -> Any:

@@ -1,12 +1,15 @@
 """What has no answer is refused by name, before SymPy sees text, with the value in the message."""
 
+import math
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
-from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, cos, nan, oo, pi, sqrt, symbols
+from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, cos, nan, oo, pi, sin, sqrt, symbols
 
 from lagrangian import (
+    CompiledChain,
     DriveError,
     InhomogeneousError,
     LagrangianError,
@@ -148,3 +151,18 @@ def test_mpmath_numbers_are_exact_whatever_context_made_them():
     assert abs(Support(eta=third).eta - Rational(1, 3)) < Rational(1, 10**40) and Rod.bob(third / third, 1).mass == 1
     with pytest.raises(QuantityError, match="finite"):
         Support(eta=context.inf)
+
+
+def test_an_array_without_axes_is_not_a_list_of_rods():
+    """As a number is not."""
+    with pytest.raises(NotAQuantityError, match="one mass for each rod"):
+        CompiledChain(np.array(1.0), [1], [1], [1])
+
+
+def test_numbers_that_sympy_cannot_tell_apart_make_a_rod():
+    """``sin(1)**2 + cos(1)**2 >= 1`` has no truth value for SymPy; the rod is a bob, whose theta'' is -g sin(theta)."""
+    chain = CompiledChain([1.0], [1.0], [1], [sin(1) ** 2 + cos(1) ** 2], gravity=2, upright=False)
+
+    assert abs(chain.acceleration(0, [1.0], [0.0])[0] + 2 * math.sin(1)) < 1e-15
+    with pytest.raises(QuantityError, match="gyration >= "):
+        CompiledChain([1.0], [1.0], [1], [sin(1) ** 2 + cos(1) ** 2 - Rational(1, 10**9)])
