@@ -11,7 +11,9 @@ Two bounds make up the error of a trace: that of the evaluation (module ``vector
 here the a-priori one at every point: ``sum over k > n of (Pbar T)**k / k!``, which for ``y'' + s(t) y = 0`` has
 ``sqrt(sup |s|) T`` for ``Pbar T``.  Where ``y'' = q y`` with q > 0 at all times, unstable by convexity, none is needed.
 Where the error is more than the margin the pixel is undecided: truncation is visible, not hidden.  The error of coupled
-and damped charts is an estimate (the matrix's bound times its eigenvectors' condition); proofs come from ``certify``.
+and damped charts is an estimate (the matrix's bound times its eigenvectors' condition), and so is that of modes: their
+parameters, ``-mu/v**2``, are rounded, which is taken to move the trace by ``2**-46`` of its size, more than it does unless
+large ones cancel; proofs come from ``certify``.
 """
 
 from __future__ import annotations
@@ -101,7 +103,14 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
          "verdict": (dims, verdict.astype(np.int8), {"long_name": "1 stable, -1 unstable, 0 undecided"})},
         {dims[0]: ys, dims[1]: xs},
         {"order": problem.F.n, "period": str(problem.F.period), "modes": len(problem.members),
-         "error_is": "bound" if _is_scalar(problem) else "estimate", "equation": _shown(problem)})
+         "error_is": "bound" if _is_scalar(problem) and _is_exact(problem) else "estimate",
+         "equation": _shown(problem)})
+
+
+def _is_exact(problem: Charted) -> bool:
+    """Whether all parameters are coordinates of the grid themselves, so that none is rounded."""
+    return all(number == 1 and sum(powers) == 1 and min(powers) == 0
+               for member in problem.members for number, powers in member.values())
 
 
 def _is_scalar(problem: Charted) -> bool:

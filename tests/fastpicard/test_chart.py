@@ -39,6 +39,15 @@ def test_errors_bound_the_true_margin():
             assert abs(float(cell["trace"]) - true) <= float(cell["error"])
 
 
+def test_the_error_is_a_bound_only_where_no_parameter_is_rounded():
+    """Modes round theirs, and where large ones cancel the trace moves by more than any share of its size."""
+    modes = [{a: sqrt(2) * h, b: sqrt(2) * v}]
+    axes = (a, 0, 1), (b, 0, 1)
+
+    assert chart(ROUGH, *axes, points=(3, 2)).attrs["error_is"] == "bound"
+    assert chart(ROUGH, (h, 0, 1), (v, 0, 1), points=(3, 2), modes=modes).attrs["error_is"] == "estimate"
+
+
 def test_undecided_is_shown_where_truncation_matters():
     """The seventh boundary of Out[26], 2.2506565 at b = 0.1, is none that twelve iterates may claim."""
     data = chart(ROUGH, (a, 2, 3), (b, 0, 0.2), points=(20, 20))
