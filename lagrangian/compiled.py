@@ -48,7 +48,7 @@ class CompiledEquations:
         if not isinstance(chain, CompiledChain):
             raise QuantityError(f"equations are compiled for one chain, and these values are for {len(chain)}: give "
                                 f"one number for every Symbol, or use scene.compile(values).")
-        self.chain = chain
+        self.chain, self._values = chain, dict(values or {})
         n, replace = len(equations.scene), substitution(values)
         self._time = Dummy("t")
         rates, angles = ([Symbol(f"{letter}{k}") for k in range(n)] for letter in ("w", "q"))
@@ -116,6 +116,10 @@ class CompiledEquations:
         if not found.dot(found) < np.inf and not np.isfinite(found).all():
             raise QuantityError("theta'' is not finite for this state: give finite numbers.")
         return found
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The arguments: generated code cannot be sent, and is generated again."""
+        return CompiledEquations, (self.equations, self._values, self.target)
 
     def __len__(self) -> int:
         return len(self.chain)

@@ -1,5 +1,6 @@
 """The symbolic equations as functions of numbers, for every target, and names that would be code."""
 
+import pickle
 from fractions import Fraction
 
 import mpmath
@@ -124,3 +125,16 @@ def test_wrong_requests_are_refused():
         compile_equations(equations, {Symbol("m"): "1"})
     with pytest.raises(SceneError, match="1 rods"):
         compile_equations(equations).acceleration(0, [0, 0], [0, 0])
+
+
+@pytest.mark.parametrize("target", ["numpy", "mpmath", "numba"])
+def test_compiled_equations_can_be_sent_to_another_process(target):
+    """Their code is generated again there; a fresh process has no function of this one."""
+    mass, drive = Symbol("m"), Symbol("epsilon")
+    equations = euler_lagrange(Scene([Rod.bob(mass, 1)] * 2, Support(eta=drive * cos(t)), 2, t=t))
+    compiled = compile_equations(equations, {mass: 3, drive: Rational(1, 7)}, target)
+    again = pickle.loads(pickle.dumps(compiled))
+    state = Fraction(1, 3), [Fraction(1, 2), 1], [1, 2]
+
+    assert again.target == target and repr(again) == repr(compiled)
+    assert (again.acceleration(*state) == compiled.acceleration(*state)).all()
