@@ -224,6 +224,8 @@ class Boundary:
         if x not in self.symbols:
             raise BadInputError(f"the unknown must be one of the parameters {list(self.symbols)}, but it is {x}.  "
                                 "Choose one of these.")
+        if not isinstance(bracket, tuple | list) or len(bracket) != 2:
+            raise BadTypeError(f"the bracket must be two numbers (lo, hi), but it is {bracket!r}.  Give both ends.")
         others = {s: v for s, v in (fixed or {}).items() if s != x}
         exact = exact_values({**others, x: 0}, self.symbols, self._F.t)
         with working(dps_to_prec(wanted) + 64):

@@ -10,10 +10,10 @@ Where P reverses in time the trace is ``2 + 4 B C`` (module ``halfway``), from t
 Two bounds make up the error of a trace: that of the evaluation (module ``vectorise``) and the remainder of the iterate,
 here the a-priori one at every point: ``sum over k > n of (Pbar T)**k / k!``, which for ``y'' + s(t) y = 0`` has
 ``sqrt(sup |s|) T`` for ``Pbar T``.  Where ``y'' = q y`` with q > 0 at all times, unstable by convexity, none is needed.
-Where the error is more than the margin the pixel is undecided: truncation is visible, not hidden.  The error of coupled
-and damped charts is an estimate (the matrix's bound times its eigenvectors' condition), and so is that of modes: their
-parameters, ``-mu/v**2``, are rounded, which is taken to move the trace by ``2**-46`` of its size, more than it does unless
-large ones cancel; proofs come from ``certify``.
+Where the error is more than the margin the pixel is undecided: truncation is visible, not hidden.  The error of
+coupled and damped charts is an estimate (the matrix's bound times its eigenvectors' condition), and so is that of
+modes: their parameters, ``-mu/v**2``, are rounded, which is taken to move the trace by ``2**-46`` of its size, more
+than it does unless large ones cancel; proofs come from ``certify``.
 """
 
 from __future__ import annotations

@@ -98,7 +98,7 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
     MissingParameterError
         if one of them has none.
     BadInputError
-        if the time ``t`` is among them.
+        if the time ``t`` is among them, or a Symbol that is an integer is given another number.
     """
     if values is not None and not isinstance(values, Mapping):
         raise BadTypeError(f"values must map SymPy Symbols to numbers, but they are {values!r}, "
@@ -117,6 +117,11 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
         raise MissingParameterError(f"every parameter needs a value, but {names} has none among {given}.  "
                                     f"Add {names} to the values.")
     exact = {s: (number or exact_number)(value, f"the value of {s}") for s, value in given.items()}
+    for s, value in exact.items():
+        fraction = value.q != 1 if isinstance(value, fmpq) else isinstance(value, Expr) and not value.is_integer
+        if s.is_integer and fraction:
+            raise BadInputError(f"{s} is an integer by its assumptions, which SymPy has made use of, but its value is "
+                                f"{value}.  Give an integer, or use a Symbol without that assumption.")
     return {s: exact[s] for s in needed}
 
 

@@ -853,6 +853,17 @@ def test_a_parameter_without_a_value_is_named(values):
             ask()
 
 
+@pytest.mark.parametrize("value", [Rational(1, 2), 0.5, pi, sqrt(2)], ids=shown)
+def test_a_symbol_that_is_an_integer_takes_integers_alone(value):
+    """SymPy has written cos(n pi) as (-1)**n, which is not so at 1/2; 2.0 is an integer."""
+    n = Symbol("n", integer=True)
+    F = FloquetMatrix([[0, 1], [-a - cos(n * pi) * cos(t), 0]], t, 2)
+
+    assert F.evaluate({a: 1, n: 2.0}).tolist() == F.evaluate({a: 1, n: 2}).tolist()
+    with pytest.raises(BadInputError, match="n is an integer by its assumptions"):
+        F.evaluate({a: 1, n: value})
+
+
 def test_parameters_missing_from_an_argument_list_are_named():
     """A function of a alone cannot know b."""
     F = FloquetMatrix(MATHIEU, t, 4)

@@ -6,7 +6,7 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, cos, diff, sin
 from sympy.abc import a, b, c, h, t, v
 
-from fastpicard import BadInputError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
 from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, sums_of_rho
 
 MATHIEU_P = Matrix([[0, 1], [-a - b * cos(t), 0]])
@@ -154,6 +154,13 @@ def test_a_bracket_without_a_change_of_sign_is_refused():
     """With the two values."""
     with pytest.raises(BadInputError, match="sign"):
         boundaries(MATHIEU)[0].root(a, (0.1, 0.2), {b: 0.1})
+
+
+@pytest.mark.parametrize("bracket", [0.2, (0.2,), (0, 1, 2), None, "01"])
+def test_a_bracket_has_two_ends(bracket):
+    """A guess is not enough."""
+    with pytest.raises(BadTypeError, match="two numbers"):
+        boundaries(MATHIEU)[0].root(a, bracket, {b: 0.1})
 
 
 numbers = st.integers(-5, 5)
