@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .lanes import LANES, accelerate_lanes
+from .machine import allocating
 
 __all__ = ["accelerate_blocks", "in_blocks"]
 
@@ -32,6 +33,7 @@ def turned(states: Any, first: int, rows: Any) -> None:
             rows[k, j] = states[first + j, k]
 
 
+@allocating
 def accelerate_blocks(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, doubtful: Any, out: Any) -> bool:
     """Write ``theta''`` of all chains to ``out``; whether all are finite and all angles small enough.
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines, sines_of_large_joints
+from .machine import allocating
 from .recursion import (
     DOUBT,
     accelerate_rods,
@@ -30,6 +31,7 @@ __all__ = ["LANES", "accelerate_lanes", "accelerate_rows"]
 LANES = 64  # 32 to 128 cost the same up to n = 100; wide rows are kinder to memory at n = 1000
 
 
+@allocating
 def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, doubtful: Any,
                      out: Any) -> bool:
     """Write ``theta''`` of all chains to ``out``, float64 only; whether all are finite and all angles small enough.

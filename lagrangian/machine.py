@@ -1,6 +1,7 @@
 """Plain Python functions as machine code, where numba is installed.
 
-Only this file knows of numba, and :mod:`lagrangian.pairtype`, which adds a number type to it.
+Only this file knows of numba, :mod:`lagrangian.translator`, which says what it may leave out, and
+:mod:`lagrangian.pairtype`, which adds a number type to it.
 
 The recursions of this package are written once, as plain functions of numbers and arrays.  Run as they are
 they take Python floats, NumPy arrays, mpmath numbers and python-flint balls; :func:`machine` translates the
@@ -13,7 +14,9 @@ once); sums are reordered only in functions marked so.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from hashlib import sha256
 from importlib import import_module
@@ -21,13 +24,20 @@ from importlib.util import find_spec
 from types import CodeType, FunctionType
 from typing import Any, TypeVar
 
-__all__ = ["as_written", "has_numba", "inlined", "machine", "rebound", "reordered", "stands_in"]
+__all__ = ["allocating", "as_written", "has_numba", "inlined", "machine", "rebound", "reordered", "stands_in"]
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 PACKAGE = __name__.rpartition(".")[0]
+_ALLOCATING: set[Callable[..., Any]] = set()
 _INLINED: set[Callable[..., Any]] = set()
 _REORDERED: set[Callable[..., Any]] = set()
 _STAND_INS: dict[Callable[..., Any], Any] = {}
+
+
+def allocating(function: AnyFunction) -> AnyFunction:
+    """Mark a function that makes arrays; in others :func:`machine` does not count who holds one."""
+    _ALLOCATING.add(function)
+    return function
 
 
 def inlined(function: AnyFunction) -> AnyFunction:
@@ -50,6 +60,18 @@ def stands_in(function: Callable[..., Any]) -> Callable[[AnyFunction], AnyFuncti
     return mark
 
 
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """No search for garbage inside: numba makes much and keeps it, and searching would take a tenth of its time."""
+    searching = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if searching:
+            gc.enable()
+
+
 @cache
 def has_numba() -> bool:
     """Whether numba is installed; without it everything runs, some hundred times slower."""
@@ -66,7 +88,8 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
     """``function`` translated for float64 and int64 arguments, or itself where numba is not installed."""
     if not has_numba():
         return function
-    return _translated(function)
+    with undisturbed():
+        return _translated(function)
 
 
 def as_written(function: Any, operators: tuple[Any, ...] = ()) -> Callable[..., Any]:
@@ -82,19 +105,21 @@ def as_written(function: Any, operators: tuple[Any, ...] = ()) -> Callable[..., 
 def _translated(function: FunctionType, written: bool = False, operators: tuple[Any, ...] = (),
                 called: bool = False) -> Callable[..., Any]:
     """``called``: from machine code alone, so that nothing is made for calls from Python, and nothing kept on disk."""
-    numba = import_module("numba")
     names = {name: _translated(callee, written, called=True) for name, callee in _callees(function, written)}
     copy = rebound(function, **names)
     digest = _shortened(_digest(part, written) for part in (function, *operators))
     copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{digest}"
     options = {"cache": (bool(operators) or not written) and not called, "no_cpython_wrapper": called,
                "no_cfunc_wrapper": True, "fastmath": set() if written else {"contract"}, "error_model": "numpy",
-               "nogil": True}
+               "nogil": True, "_nrt": written or function in _ALLOCATING}
     if function in _INLINED:
         options["forceinline"] = True
     if function in _REORDERED and not written:
         options["fastmath"] = {"contract", "reassoc", "nsz"}
-    return numba.njit(**options)(copy)  # type: ignore[no-any-return]
+    passes = import_module(f"{PACKAGE}.translator").Passes
+    found = import_module("numba").njit(pipeline_class=passes, **options)(copy)
+    found.compile = undisturbed()(found.compile)
+    return found  # type: ignore[no-any-return]
 
 
 def _callees(function: FunctionType, written: bool) -> Iterator[tuple[str, FunctionType]]:

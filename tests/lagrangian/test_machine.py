@@ -1,0 +1,90 @@
+"""What numba is spared when it translates, and that it works as before for everybody else."""
+
+import gc
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from lagrangian import CompiledChain
+from lagrangian.machine import machine, undisturbed
+
+event = pytest.importorskip("numba.core.event")
+
+FIRST_MOTION = """
+import sys
+import numpy as np
+from lagrangian import CompiledChain, simulate
+chain = CompiledChain([1.0] * 2, [1.0] * 2, [0.5] * 2, [0.6] * 2)
+simulate(chain, [2, -3], [0, 0], [0, 1])
+print(sorted({"scipy.linalg"} & set(sys.modules)))
+import numba
+dot = numba.njit(lambda x: np.dot(x, x))
+print(dot(np.ones((2, 2))).tolist(), numba.njit(lambda x: np.linalg.det(x))(2 * np.eye(2)))
+"""
+
+
+def test_a_first_motion_loads_no_linear_algebra_and_numba_still_has_it():
+    """SciPy's, which takes a third of a second; in a process of its own."""
+    pytest.importorskip("scipy")
+    done = subprocess.run([sys.executable, "-c", FIRST_MOTION], capture_output=True, text=True, check=True)
+
+    assert done.stdout.splitlines() == ["[]", "[[2.0, 2.0], [2.0, 2.0]] 4.0"]
+
+
+@pytest.mark.parametrize("searching", [True, False])
+def test_the_search_for_garbage_stops_while_numba_works_and_then_is_as_it_was(searching):
+    """Also where the work fails."""
+    def failing():
+        with undisturbed():
+            assert not gc.isenabled()
+            raise ZeroDivisionError
+
+    before = gc.isenabled()
+    (gc.enable if searching else gc.disable)()
+    try:
+        with pytest.raises(ZeroDivisionError):
+            failing()
+        assert gc.isenabled() is searching
+    finally:
+        (gc.enable if before else gc.disable)()
+
+
+def test_numba_searches_no_garbage_while_it_translates():
+    """Seen from inside, by a listener of numba's own."""
+    seen = []
+
+    class Watching(event.Listener):
+        def on_start(self, _):
+            seen.append(gc.isenabled())
+
+        def on_end(self, _):
+            pass
+
+    def doubled(x):
+        return x + x
+
+    with event.install_listener("numba:compile", Watching()):
+        assert machine(doubled)(1.5) == 3.0
+    assert seen == [False] and gc.isenabled()
+
+
+def test_every_pass_left_out_is_one_of_numba():
+    """A pass that numba renames would come back unseen."""
+    from numba.core import typed_passes, untyped_passes
+
+    from lagrangian.translator import UNCOUNTED
+
+    assert {*UNCOUNTED} <= {*vars(typed_passes), *vars(untyped_passes)}
+
+
+def test_translated_functions_hold_no_array_longer_than_the_call():
+    """Neither those that count references nor those that do not."""
+    chain, states = CompiledChain([1.0, 2.0], [1.0] * 2, [0.5] * 2, [0.6] * 2), np.ones((2, 70))
+    held = [sys.getrefcount(x) for x in (states, chain.rods)]
+    for _ in range(3):
+        chain.acceleration(0, states, states)
+        chain.acceleration(0, np.ones(2), np.ones(2))
+
+    assert [sys.getrefcount(x) for x in (states, chain.rods)] == held
