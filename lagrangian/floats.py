@@ -62,7 +62,7 @@ def split(values: Any, angles: bool) -> Any:
     out = np.zeros((3, len(values)))
     for k, x in enumerate(values):
         exact = quantity(x, "a state")
-        whole = int(floor(exact / (2 * pi) + Rational(1, 2))) if angles else 0
+        whole = int(floor(exact / (2 * pi) + Rational(1, 2))) if angles and abs(exact) > 3 else 0
         out[:, k] = *high_low(exact - 2 * pi * whole if whole else exact), whole
     return out
 

@@ -18,7 +18,7 @@ import numpy as np
 from lagrangian import CompiledChain, simulate
 chain = CompiledChain([1.0] * 2, [1.0] * 2, [0.5] * 2, [0.6] * 2)
 simulate(chain, [2, -3], [0, 0], [0, 1])
-print(sorted({"scipy.linalg"} & set(sys.modules)))
+print(sorted({"scipy.linalg", "sympy.tensor.tensor"} & set(sys.modules)))
 import numba
 dot = numba.njit(lambda x: np.dot(x, x))
 print(dot(np.ones((2, 2))).tolist(), numba.njit(lambda x: np.linalg.det(x))(2 * np.eye(2)))
@@ -26,7 +26,7 @@ print(dot(np.ones((2, 2))).tolist(), numba.njit(lambda x: np.linalg.det(x))(2 * 
 
 
 def test_a_first_motion_loads_no_linear_algebra_and_numba_still_has_it():
-    """SciPy's, which takes a third of a second; in a process of its own."""
+    """SciPy's, which takes a third of a second, nor SymPy's tensors; in a process of its own."""
     pytest.importorskip("scipy")
     done = subprocess.run([sys.executable, "-c", FIRST_MOTION], capture_output=True, text=True, check=True)
 
