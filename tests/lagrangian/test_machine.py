@@ -79,6 +79,19 @@ def test_every_pass_left_out_is_one_of_numba():
     assert {*UNCOUNTED} <= {*vars(typed_passes), *vars(untyped_passes)}
 
 
+def test_remembered_types_are_those_that_numba_finds():
+    """What a translation has found once, among it float * float, asked for again of numba itself."""
+    from numba import float64, njit
+    from numba.core.registry import cpu_target
+
+    from lagrangian.translator import Passes, Remembering
+
+    assert njit(lambda x, k: 2.0 * (x * x) ** k - x, pipeline_class=Passes)(1.5, 2) == 8.625
+    assert (float64, float64) in [arguments for _, arguments in Remembering.found]
+    for (function, arguments), signature in Remembering.found.items():
+        assert cpu_target.typing_context.resolve_function_type(function, arguments, {}) == signature
+
+
 def test_translated_functions_hold_no_array_longer_than_the_call():
     """Neither those that count references nor those that do not."""
     chain, states = CompiledChain([1.0, 2.0], [1.0] * 2, [0.5] * 2, [0.6] * 2), np.ones((2, 70))
