@@ -59,11 +59,14 @@ def _sum(parts: Iterable[Waves]) -> Waves:
 
 
 def _product(left: Waves, right: Waves) -> Waves:
-    """``2 (c cos p + s sin p)(C cos q + S sin q) = (cC - sS) cos(p+q) + (sC + cS) sin(p+q) + ...(p-q)``."""
+    """``2 (c cos p + s sin p)(C cos q + S sin q) = (cC - sS) cos(p+q) + (sC + cS) sin(p+q) + ...(p-q)``.
+
+    Coefficients are expanded, or those of a power would double in size with every factor.
+    """
     def beats() -> Iterator[Waves]:
         for p, (c, s) in left.items():
             for q, (C, S) in right.items():
                 yield {p + q: ((c * C - s * S) / 2, (s * C + c * S) / 2)}
                 side = 1 if p >= q else -1
                 yield {abs(p - q): ((c * C + s * S) / 2, side * (s * C - c * S) / 2)}
-    return _sum(beats())
+    return {q: (expand(c), expand(s)) for q, (c, s) in _sum(beats()).items()}
