@@ -36,6 +36,7 @@ autodoc_default_options = {"members": True}
 napoleon_google_docstring = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
+napoleon_custom_sections = ["Speed and accuracy"]
 suppress_warnings = ["ref.python"]  # "free of t" in a type is prose; which attribute t it might mean is no matter
 
 

@@ -35,15 +35,15 @@ class Ensemble:
     ``Ensemble(mass, length, center, gyration, gravity=9.81, support_acceleration=(0, 0), damping=None, springs=None,
     upright=True)``
 
+    ``ensemble[j]`` is chain j as a :class:`lagrangian.CompiledChain`, ``len(ensemble)`` how many there are.  From
+    symbols: ``scene.compile({m: array})``.
+
     Parameters
     ----------
     mass, length, center, gyration : shape (chains, n), or what NumPy repeats to it: (n,) where all chains have the same
         numbers, (chains, 1) where all rods of a chain have; float64, to which other numbers are rounded; kg, m
     damping, springs : the same, or None; N m s, N m
     gravity, support_acceleration, upright : as for :class:`lagrangian.CompiledChain`, the same for all chains
-
-    ``ensemble[j]`` is chain j as a :class:`lagrangian.CompiledChain`, ``len(ensemble)`` how many there are.  From
-    symbols: ``scene.compile({m: array})``.
 
     Raises
     ------
