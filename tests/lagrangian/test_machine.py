@@ -51,8 +51,9 @@ def test_the_search_for_garbage_stops_while_numba_works_and_then_is_as_it_was(se
         (gc.enable if before else gc.disable)()
 
 
-def test_numba_searches_no_garbage_while_it_translates():
-    """Seen from inside, by a listener of numba's own."""
+def test_numba_searches_no_garbage_while_it_translates(monkeypatch, tmp_path):
+    """Seen from inside, by a listener of numba's own; nothing is in the cache."""
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
     seen = []
 
     class Watching(event.Listener):
