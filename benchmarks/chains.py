@@ -309,6 +309,15 @@ def timed(function: Callable[[], Any], calls: int = 3) -> tuple[Any, float]:
     return found, best
 
 
+FIRST_MOTION = """
+import time, numpy as np
+from lagrangian import CompiledChain, simulate
+chain = CompiledChain([1.0] * 2, [1.0] * 2, [1.0] * 2, [1.0] * 2, upright=False)
+start = time.perf_counter()
+simulate(chain, [2.0] * 2, [0.0] * 2, [0, 1])
+print(f"{time.perf_counter() - start:.2f} s to a first motion before anything else")
+"""
+
 START = """
 import time; start = time.perf_counter()
 import numpy as np
@@ -328,12 +337,13 @@ print(f"{loaded - start:.2f} s to import, {first - loaded:.2f} s more to the fir
 
 def start() -> None:
     print("\nFirst calls in a new process: without and with numba's cache")
-    with tempfile.TemporaryDirectory() as folder:
-        for label in ("translated", "from the cache"):
-            environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
-            done = subprocess.run([sys.executable, "-c", START], env=environment, capture_output=True, text=True,
-                                  check=True)
-            print(f"{label:>15}: {done.stdout.strip()}")
+    for script in (START, FIRST_MOTION):
+        with tempfile.TemporaryDirectory() as folder:
+            for label in ("translated", "from the cache"):
+                environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
+                done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True,
+                                      check=True)
+                print(f"{label:>15}: {done.stdout.strip()}")
 
 
 PARTS = {"rhs": right_hand_sides, "many": many_chains, "motion": motions, "digits": digits, "modes": modes,

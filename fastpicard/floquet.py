@@ -279,7 +279,7 @@ class FloquetMatrix:
         The smaller of two bounds for each entry (module ``remainder``): the a-priori sum of
         ``(Pbar T)**k / k!`` over ``k > n``, and the a-posteriori one, which computes the next increments at
         these parameters and is the true error to a few percent at points.  It takes some 0.1 s for Mathieu's
-        equation, and 10 to 20 s where ``Pbar T`` is 60 or where fast waves leave a remainder of 1e-18.
+        equation (``benchmarks/enclosure.py``), and far longer where ``Pbar T`` is large or waves are fast.
 
         Examples
         --------

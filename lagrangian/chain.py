@@ -245,7 +245,7 @@ class CompiledChain:
 
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n, chains) from exact numbers, rounded once."""
-        pull = self._fine_pull(t)
+        pull = self.fine_pull(t)
         found = in_pairs(self._in_pairs, pull, theta, omega)
         if found is None:
             found = np.empty_like(theta)
@@ -253,7 +253,7 @@ class CompiledChain:
                 found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
         return found
 
-    def _fine_pull(self, t: Any) -> Any:
+    def fine_pull(self, t: Any) -> Any:
         """:meth:`pull` in numbers of FINE, or in floats where the support moves by a function of them."""
         if self._steady:
             return self._steady_fine

@@ -56,8 +56,8 @@ class Ensemble:
     ------------------
     Accelerations are as good as those of a :class:`lagrangian.CompiledChain`, within 4e-15 of the largest, and those
     in doubt are found again.  Chains of two to ten rods, a thousand at once: 14 to 20 ns a link and chain where all are
-    even with free joints, 18 to 27 where not, 1.5 to 2 times what common rods cost.  Without numba NumPy's rows do it,
-    0.5 to 1 us.
+    even with free joints, 18 to 27 where not, 1.5 to 2 times what common rods cost (``benchmarks/chains.py many``).
+    Without numba NumPy's rows do it, tens of times slower.
 
     >>> ensemble = Ensemble([[1, 1], [1, 2], [1, 3]], [1, 1], [1, 1], [1, 1], gravity=10)
     >>> len(ensemble), ensemble.acceleration(0, [[0.5, 0.0]] * 3, [[0.0, 1.0]] * 3).round(3)[:, 0]
@@ -85,7 +85,10 @@ class Ensemble:
         return len(self._columns[0])
 
     def __getitem__(self, j: int) -> CompiledChain:
-        j = range(len(self))[index(j)]
+        try:
+            j = range(len(self))[index(j)]
+        except IndexError:
+            raise IndexError(f"the ensemble has {len(self)} chains, counted from 0, and {j} is none of them.") from None
         if j not in self._members:
             mass, length, center, gyration = (x[j] for x in self._columns)
             damping, springs = (None if x is None else x[j] for x in (self.damping, self.springs))
@@ -130,7 +133,7 @@ class Ensemble:
     def _again(self, t: Any, doubtful: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of some chains from exact numbers: all at once in pairs, or one after the other."""
         constants = [None if x is None else x[..., doubtful] for x in self._in_pairs]
-        found = in_pairs(constants, self[0]._fine_pull(t), theta.T, omega.T)
+        found = in_pairs(constants, self[0].fine_pull(t), theta.T, omega.T)
         if found is not None:
             return found.T
         which = np.flatnonzero(doubtful).tolist()

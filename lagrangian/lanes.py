@@ -139,7 +139,6 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
     return wrong == 0
 
 
-
 def accelerate_rows(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, out: Any) -> tuple[bool, Any]:
     """The same by NumPy, with one chain in every entry of a row; whether all are finite, and which are in doubt.
 

@@ -34,6 +34,13 @@ settings.load_profile(PROFILE)
 CHECKS = int(os.environ.get("CHECKS", {"ci": 2000, "nightly": 100_000}.get(PROFILE, 50)))
 
 
+def hide(monkeypatch, package):
+    """Make a package one that is not installed."""
+    for name in [name for name in sys.modules if name.startswith(f"{package}.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, package, None)
+
+
 def in_threads(function, arguments):
     """The values of a function at many arguments, each in a thread of its own, all of them interrupted often."""
     before = sys.getswitchinterval()

@@ -9,6 +9,7 @@ from sympy.abc import a, b, t
 
 import fastpicard
 from fastpicard import FloquetMatrix, NotInstalledError, certify, chart
+from tests.conftest import hide
 
 
 @pytest.mark.parametrize("heavy", ["scipy", "matplotlib", "pandas", "dask", "numba", "xarray"])
@@ -47,9 +48,7 @@ def test_every_promised_name_exists_and_says_what_it_is():
 def test_a_package_that_is_not_installed_is_named(monkeypatch, package, ask):
     """With what to do; it is an ImportError too."""
     question = ask(FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 8))
-    for name in [name for name in sys.modules if name.startswith(f"{package}.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, package, None)
+    hide(monkeypatch, package)
     with pytest.raises(NotInstalledError, match=f"needs {package}, which is not installed: pip install {package}"):
         question()
 

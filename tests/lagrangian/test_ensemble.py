@@ -261,3 +261,9 @@ def test_pi_among_the_numbers_is_rounded_once():
     ensemble = Ensemble([[pi, 1], [mpmath.mpf(2), 3]], 1, 1, 1)
 
     assert ensemble[0].rods[0, 0] == np.pi and ensemble[1].rods[0, 0] == 2
+
+
+def test_a_chain_that_is_none_of_the_ensemble_is_named():
+    """By its number, and how many there are."""
+    with pytest.raises(IndexError, match=r"3 chains.*and 5 is none"):
+        Ensemble([[1, 1], [1, 2], [1, 3]], [1, 1], [1, 1], [1, 1])[5]

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import sys
 from itertools import pairwise
 from pathlib import Path
 
@@ -31,6 +30,7 @@ from lagrangian import (
     simulate,
 )
 from lagrangian.animation import timing
+from tests.conftest import hide
 
 t = Symbol("t")
 CASES = json.loads((Path(__file__).parent / "cases" / "trajectories.json").read_text())["cases"]
@@ -612,9 +612,7 @@ def test_one_axes_are_not_the_two_of_a_picture():
     ("heyoka", lambda: simulate(SWING.chain, [1, 2], [0, 0], [0, 1], method="heyoka"))])
 def test_a_package_that_is_not_installed_is_named(monkeypatch, package, ask):
     """With what to do; it is an ImportError too."""
-    for name in [name for name in sys.modules if name.startswith(f"{package}.")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, package, None)
+    hide(monkeypatch, package)
     with pytest.raises(NotInstalledError, match=f"needs {package}, which is not installed: pip install {package}"):
         ask()
 
