@@ -116,9 +116,9 @@ def _translated(function: FunctionType, written: bool = False, operators: tuple[
         options["forceinline"] = True
     if function in _REORDERED and not written:
         options["fastmath"] = {"contract", "reassoc", "nsz"}
-    passes = import_module(f"{PACKAGE}.translator").Passes
-    found = import_module("numba").njit(pipeline_class=passes, **options)(copy)
-    found.compile = undisturbed()(found.compile)
+    translator = import_module(f"{PACKAGE}.translator")
+    found = import_module("numba").njit(pipeline_class=translator.Passes, **options)(copy)
+    found.compile = undisturbed()(translator.remembering()(found.compile))
     return found  # type: ignore[no-any-return]
 
 

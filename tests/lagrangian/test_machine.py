@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from lagrangian import CompiledChain
+from lagrangian.angles import revolved
 from lagrangian.machine import machine, undisturbed
 
 event = pytest.importorskip("numba.core.event")
@@ -80,17 +81,50 @@ def test_every_pass_left_out_is_one_of_numba():
     assert {*UNCOUNTED} <= {*vars(typed_passes), *vars(untyped_passes)}
 
 
-def test_remembered_types_are_those_that_numba_finds():
+def test_remembered_types_are_those_that_numba_finds(monkeypatch, tmp_path):
     """What a translation has found once, among it float * float, asked for again of numba itself."""
-    from numba import float64, njit
+    from numba import float64
+    from numba.core.errors import TypingError
     from numba.core.registry import cpu_target
+    from numba.core.types.functions import BaseFunction
 
-    from lagrangian.translator import Passes, Remembering
+    from lagrangian.translator import FOUND
 
-    assert njit(lambda x, k: 2.0 * (x * x) ** k - x, pipeline_class=Passes)(1.5, 2) == 8.625
-    assert (float64, float64) in [arguments for _, arguments in Remembering.found]
-    for (function, arguments), signature in Remembering.found.items():
-        assert cpu_target.typing_context.resolve_function_type(function, arguments, {}) == signature
+    def curve(x, k):
+        return 2.0 * (x * x) ** k - x
+
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    search = BaseFunction.get_call_type
+    FOUND.clear()
+    assert machine(curve)(1.5, 2) == 8.625
+
+    assert BaseFunction.get_call_type is search
+    assert (float64, float64) in [arguments for _, found in FOUND.values() for arguments in found]
+    for function, found in FOUND.values():
+        for arguments, signature in found.items():
+            if isinstance(signature, TypingError):
+                with pytest.raises(TypingError):
+                    function.get_call_type(cpu_target.typing_context, arguments, {})
+            else:
+                assert function.get_call_type(cpu_target.typing_context, arguments, {}) == signature
+
+
+def test_parts_of_functions_have_no_machine_code_of_their_own(monkeypatch, tmp_path):
+    """Of a function that calls two others, numba gets one module to make machine code of."""
+    from numba.core.codegen import JITCPUCodegen
+
+    made, add = [], JITCPUCodegen._add_module
+
+    def watching(self, module):
+        made.append(module.name.partition("_")[0])
+        return add(self, module)
+
+    monkeypatch.setattr(JITCPUCodegen, "_add_module", watching)
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path))
+    machine.cache_clear()
+
+    assert machine(revolved)(0.25, 0.0, 1.0, 0.0) == (1.0, 0.0)
+    assert {"revolved", "product", "sines"} & {*made} == {"revolved"}
 
 
 def test_translated_functions_hold_no_array_longer_than_the_call():
