@@ -5,8 +5,9 @@ Modes are canonical, so where no relation binds the parameters a series is zero 
     sum over q, r of t**r (c cos qt + s sin qt),   c and s of the parameters
 
 is formed with one name for every angle, for ``(b**2 - c**2)/(b + c)`` is ``b - c``; where ``cos phi`` is among the
-coefficients, phases join them, ``cos(qt + phi) = cos phi cos qt - sin phi sin qt``.  These functions of time are
-independent, so that every coefficient is asked whether it is zero (:func:`fastpicard.ring.is_zero`).
+coefficients, or an integer among the phases, phases join the coefficients,
+``cos(qt + phi) = cos phi cos qt - sin phi sin qt``.  These functions of time are independent, so that every
+coefficient is asked whether it is zero (:func:`fastpicard.ring.is_zero`).
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ from fastpicard.ring import (
     multiply_monomials,
     power,
     rational_value,
+    symbols_of,
     to_expression,
 )
 
@@ -44,7 +46,7 @@ from fastpicard.ring import (
 def vanishes(modes: Modes) -> bool:
     """Whether a series is zero as a function of time and parameters."""
     monomials = {m for _, (frequency, phase), own in modes for m in (own, *dict(frequency), *dict(phase))}
-    return not support(modes) if has_relations(monomials) else not modes
+    return not support(modes) if has_relations(monomials) or _half_turns(modes) else not modes
 
 
 def support(modes: Modes) -> frozenset[tuple[Any, int]]:
@@ -53,12 +55,17 @@ def support(modes: Modes) -> frozenset[tuple[Any, int]]:
     Waves that cancel by relations between parameters do not count, so equal series have equal support.
     """
     collected: dict[tuple[int, Angle, int], Polynomial] = {}
-    plain = _without_phases(modes) if has_waves(m for _, _, m in modes) else modes
+    plain = _without_phases(modes) if has_waves(m for _, _, m in modes) or _half_turns(modes) else modes
     for (kind, angle, monomial), f in _with_one_name(plain).items():
         for r, c in enumerate(f.coeffs()):
             if c:
                 add_term(collected.setdefault((kind, angle, r), {}), monomial, c)
     return frozenset((_rate(angle[0]), r) for (_, angle, r), terms in collected.items() if not is_zero(terms))
+
+
+def _half_turns(modes: Modes) -> bool:
+    """Whether a phase holds an integer ``n``: ``cos(qt + n pi)`` is ``(-1)**n cos qt``."""
+    return any(s.is_integer for s in symbols_of(m for _, (_, phase), _ in modes for m, _ in phase))
 
 
 @lru_cache(maxsize=1 << 12)

@@ -428,3 +428,13 @@ def test_a_series_equals_numbers_and_nothing_that_is_no_series():
     outside = (sympy.tan(t), sympy.nan, sympy.oo, True, sympy.true, "1", "1/2", None, 1j, Symbol("t", real=True), [])
     for value in outside:
         assert half != value and one != value
+
+
+def test_half_turns_by_an_integer_are_signs_where_series_are_compared():
+    """cos(2t + k pi) = cos(2t - k pi) = (-1)**k cos 2t, which is how SymPy writes it."""
+    k = Symbol("k", integer=True)
+    square, mirrored = of(cos(t + pi * k / 2) ** 2), of(cos(t - pi * k / 2) ** 2)
+
+    for f in (square, mirrored, of(square.as_expr()), pickle.loads(pickle.dumps(square))):
+        assert f == square and hash(f) == hash(square)
+    assert square == ((-1) ** k * cos(2 * t) + 1) / 2 and square != (cos(2 * t) + 1) / 2
