@@ -36,6 +36,7 @@ from fastpicard.ring import (
     to_expression,
     to_sympy_number,
 )
+from fastpicard.writing import dyadic
 
 MAXIMAL_POWER = 10_000
 _INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo, sympy.AccumBounds)
@@ -100,7 +101,7 @@ def read(value: Any, t: Symbol) -> Modes:
     NotInFamilyError
         with the part of the expression that is outside.
     """
-    expression = as_expression(value)
+    expression = dyadic(as_expression(value))
     check_same_time(expression, t)
     return _read(expression, t)
 

@@ -438,3 +438,20 @@ def test_half_turns_by_an_integer_are_signs_where_series_are_compared():
     for f in (square, mirrored, of(square.as_expr()), pickle.loads(pickle.dumps(square))):
         assert f == square and hash(f) == hash(square)
     assert square == ((-1) ** k * cos(2 * t) + 1) / 2 and square != (cos(2 * t) + 1) / 2
+
+
+@pytest.mark.parametrize(
+    "f", [lambda x: exp(x * a), lambda x: a ** (2 * x), lambda x: sqrt(x + a), lambda x: 3 ** (a * x)])
+def test_a_float_inside_a_coefficient_is_the_dyadic_number_it_stands_for(f):
+    """exp(0.5 a) is exp(a/2), and a**1.0 is a: whatever holds a float, no operation rounds."""
+    assert of(f(0.5) * t) == f(Rational(1, 2)) * t
+    assert of(f(0.1)) == f(Rational(0.1))
+
+
+def test_floats_in_exponents_do_not_round_when_factors_are_joined():
+    """SymPy would write exp(0.1 a) exp(0.2 a) as exp(0.30000000000000004 a)."""
+    product = of(exp(0.1 * a)) * of(exp(0.2 * a))
+
+    assert not product.as_expr().atoms(sympy.Float)
+    assert product == exp((Rational(0.1) + Rational(0.2)) * a)
+    assert of(t**2.0) == t**2
