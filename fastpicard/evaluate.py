@@ -69,8 +69,9 @@ def exact_number(value: Any, what: str) -> Any:
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(value, mpmath.mp.constant):
         raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  "
                            "Give an int, Fraction, SymPy number, mpf, float or arb; text is never evaluated.")
-    exact = _finite(value, math.isfinite(value), what)
-    return fmpq(int(exact)) if isinstance(exact, numbers.Integral) else fmpq(*map(int, exact.as_integer_ratio()))
+    if isinstance(value, numbers.Rational):  # of any size, floats are not
+        return fmpq(int(value.numerator), int(value.denominator))
+    return fmpq(*map(int, _finite(value, math.isfinite(value), what).as_integer_ratio()))
 
 
 def _finite(value: Any, finite: bool, what: str) -> Any:
@@ -152,20 +153,20 @@ def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
         return arb(rational(e))
     if e in _CONSTANTS:
         return _CONSTANTS[e]()
+    if not (e.is_Add or e.is_Mul or e.is_Pow or e.func in _FUNCTIONS):
+        raise BadInputError(f"no rigorous value of {e} is known: {e.func.__name__} has no ball arithmetic here.  "
+                            "Replace it by a Symbol and give that a value.")
     parts = [expression_ball(x, values) for x in e.args]
     if e.is_Add:
         return sum(parts, arb(0))
     if e.is_Mul:
         return math.prod(parts, start=arb(1))
-    if e.is_Pow:
-        return _power(parts[0], parts[1], e.exp)
-    if e.func in _FUNCTIONS:
-        return _FUNCTIONS[e.func](*parts)
-    raise BadInputError(f"no rigorous value of {e} is known: {e.func.__name__} has no ball arithmetic here.  "
-                        "Replace it by a Symbol and give that a value.")
+    return _power(parts[0], parts[1], e.exp) if e.is_Pow else _FUNCTIONS[e.func](*parts)
 
 
 def _power(base: Any, exponent: Any, e: Expr) -> Any:
+    if not e.is_Rational and exponent.is_exact() and exponent.is_integer():  # by its value: (-1)**k
+        e = sympy.Integer(int(exponent.unique_fmpz()))
     if e.is_Integer and e > 0 and base.mid() == 0:  # FLINT gives nan for powers of a ball around 0
         return arb(0, abs(base).upper() ** int(e))
     if e.is_Integer:

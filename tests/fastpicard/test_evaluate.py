@@ -1,5 +1,7 @@
 """Numbers from exact results: every digit asked for, and refusal where there is none."""
 
+from fractions import Fraction
+
 import mpmath
 import numpy as np
 import pytest
@@ -156,3 +158,29 @@ def test_constants_without_balls_are_refused_by_name(constant):
     """The sentence speaks of the constant, not of a class."""
     with pytest.raises(BadInputError, match=r"no rigorous value of (zeta\(3\)|\w+) is known: \w+ has no ball"):
         PoissonSeries(constant * cos(t), t).evaluate(1)
+
+
+@pytest.mark.parametrize("base", [-1, -2, Rational(-3, 2), 3])
+@pytest.mark.parametrize("k", [-3, 0, 2, 5])
+def test_a_power_of_a_negative_number_has_a_value_where_its_exponent_is_an_integer(base, k):
+    """(-2)**k, and (-2)**a at an a that happens to be one; at 1/2 it is not real."""
+    n = Symbol("n", integer=True)
+
+    for exponent in (n, a):
+        assert PoissonSeries(Rational(base) ** exponent * t, t).evaluate(1, {exponent: k}) == float(Rational(base) ** k)
+
+
+@pytest.mark.parametrize("value", [10**400, Fraction(10**400, 3), Fraction(3, 10**400), -(10**400)],
+                         ids=["large", "large fraction", "small fraction", "large and negative"])
+def test_integers_and_fractions_have_no_largest_one(value):
+    """They are exact, and need not pass through a float."""
+    with mpmath.workdps(30):
+        expected = mpmath.mpf(value.numerator) / value.denominator
+        assert abs(PoissonSeries(a * t, t).evaluate(1, {a: value}, 20) / expected - 1) < 1e-19
+
+
+@pytest.mark.parametrize("constant", [sympy.CRootOf(b**5 - b - 1, 0), sympy.Sum(a / b**2, (b, 1, 3))])
+def test_what_binds_a_symbol_is_refused_by_its_own_name(constant):
+    """The bound b is no parameter, and has no value."""
+    with pytest.raises(BadInputError, match=f"{type(constant).__name__} has no ball arithmetic here"):
+        PoissonSeries(constant * t, t).evaluate(1, {a: 2})
