@@ -133,10 +133,11 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     scales = _balance(P)
     speed, turn = _speed(P, scales) * _upper(abs(length)), P.highest * _upper(abs(length))
     # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones.
-    pieces = max(1, math.ceil(speed / 0.25) if P.is_wide else math.ceil(max(speed / (9 + ctx.prec / 50), turn / 3.2)))
-    if pieces > MOST_PIECES:
+    strides = speed / 0.25 if P.is_wide else max(speed / (9 + ctx.prec / 50), turn / 3.2)
+    if not strides <= MOST_PIECES:
         raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} takes more than {MOST_PIECES} steps: the "
-                            f"coefficients reach {_upper(P.bound.det()):.3g}.  Take a smaller period.")
+                            f"coefficients reach {max(map(_upper, P.bound.entries())):.3g}.  Take a smaller period.")
+    pieces = max(1, math.ceil(strides))
     step = length / pieces
     result = None
     for k in range(pieces):

@@ -226,3 +226,11 @@ def test_threads_wait_for_each_other_and_change_no_digit():
         return MATHIEU.evaluate(values, digits=digits), [(x.mid().man_exp(), x.rad().man_exp()) for x in balls]
 
     assert in_threads(numbers_with, wanted) == [numbers_with(digits) for digits in wanted] and ctx.prec == before
+
+
+@pytest.mark.parametrize("x", [-1e300, 10**400], ids=["a float", "beyond floats"])
+def test_coefficients_too_large_for_any_number_of_steps_are_named(x):
+    """Also where they are beyond all floats."""
+    for ask in (MATHIEU.enclosure, MATHIEU.verdict, MATHIEU.multipliers):
+        with pytest.raises(BadInputError, match=r"takes more than \d+ steps: the coefficients reach (1e\+300|inf)"):
+            ask({a: x, b: 1})
