@@ -23,6 +23,8 @@ from fastpicard.evaluate import ball, count_of_digits, exact_number, to_complex,
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 
+MOST_TURNS = 2**63 - 1
+
 
 def mathieu_c(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
     """``w_I(z; a, q)``, the even solution with value 1 at ``z = 0``: an mpf with all ``digits`` right.
@@ -106,10 +108,23 @@ def _solution(a: Any, q: Any, z: Any, digits: Any, column: int) -> Any:
     wanted, (x, y, end) = count_of_digits(digits), _numbers(a, q, z)
 
     def once() -> Any:
-        return arb_mat([[transition(_equation(ball(x), ball(y)), arb(0), ball(end))[0, column]]])
+        return arb_mat([[_fundamental(_equation(ball(x), ball(y)), ball(end))[0, column]]])
 
     is_box = any(isinstance(value, arb) and not value.is_exact() for value in (x, y, end))
     return to_number(to_digits(once, wanted + 2, is_box)[0, 0], wanted)
+
+
+def _fundamental(P: Harmonics, z: Any) -> Any:
+    """``Phi(z) = Phi(z - m pi) Phi(pi)**m``, with ``-pi`` in place of ``pi`` where z is negative.
+
+    It holds for every integer ``m``, so that the one next to ``z/pi`` need not be proved to be that.
+    """
+    turn = arb.pi() if z.mid() >= 0 else -arb.pi()
+    turns = int((z.mid() / turn).mid().floor().unique_fmpz())
+    if turns > MOST_TURNS:
+        raise BadInputError(f"z can make {MOST_TURNS} turns of pi at most, but it is {z.str(5)}.  Take a smaller one.")
+    rest = transition(P, arb(0), z - turn * turns)
+    return rest * transition(P, arb(0), turn) ** turns if turns else rest
 
 
 def _equation(a: Any, q: Any) -> Harmonics:

@@ -35,6 +35,24 @@ def test_solutions_agree_with_an_integrator_of_another_house(a, q, z):
             assert abs(found - value) < 1e-15 * max(1, abs(value))
 
 
+@pytest.mark.parametrize("z", [1000, -1e6, 10**12])
+def test_far_away_they_cost_what_they_cost_over_one_period(z):
+    """Where q = 0 cos and sin of sqrt(2) z; elsewhere y(z + pi) + y(z - pi) = 2 w_I(pi) y(z)."""
+    with mpmath.workdps(40):
+        assert abs(mathieu_c(2, 0, z, 20) - mpmath.cos(mpmath.sqrt(2) * z)) < 1e-19
+        for a, q in ((2, 0.3), (-0.1, 0.4)):
+            for y in (mathieu_c, mathieu_s):
+                before, here, after = (y(a, q, z + k * mpmath.pi, 30) for k in (-1, 0, 1))
+                cosine = mathieu_c(a, q, +mpmath.pi, 35)
+                assert abs(before + after - 2 * cosine * here) < 1e-20 * max(1, abs(here))
+
+
+def test_too_far_away_is_refused():
+    """Powers of a matrix go to 2**63."""
+    with pytest.raises(BadInputError, match="turns of pi at most"):
+        mathieu_c(2, 1, 10**30)
+
+
 def test_at_zero_they_are_one_and_nothing():
     """Exactly, not a ball around 0."""
     assert mathieu_c(2, 3, 0) == 1 and mathieu_s(2, 3, 0) == 0
