@@ -9,7 +9,7 @@ addition.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from math import lcm
@@ -20,24 +20,25 @@ from flint import fmpq
 from fastpicard.modes import COS, Angle, Modes, common_unit, orient
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
-FIELD = 32  # bits of one packed exponent or angle index
+FIELD = 32  # bits of one packed exponent or angle index, unless those of P are large themselves
+GROWTH = 24  # bits that are left to each: an index grows by at most its largest in P from one increment to the next
 Term = tuple[int, int, int, Any]  # kind, angle, monomial, coefficient (fmpq)
 Row = tuple[tuple[int, tuple[Term, ...]], ...]  # (column, terms) of a row of P
 
 
-def pack(indices: Sequence[int]) -> int:
+def pack(indices: Sequence[int], field: int) -> int:
     """A vector of integers as one integer; adding vectors is adding integers."""
-    return sum(index << (FIELD * place) for place, index in enumerate(indices))
+    return sum(index << (field * place) for place, index in enumerate(indices))
 
 
-def unpack(packed: int, length: int) -> list[int]:
+def unpack(packed: int, length: int, field: int) -> list[int]:
     """The inverse of :func:`pack`."""
     indices = []
     for _ in range(length):
-        index = packed & ((1 << FIELD) - 1)
-        index -= (index >> (FIELD - 1)) << FIELD
+        index = packed & ((1 << field) - 1)
+        index -= (index >> (field - 1)) << field
         indices.append(index)
-        packed = (packed - index) >> FIELD
+        packed = (packed - index) >> field
     return indices
 
 
@@ -50,43 +51,53 @@ class Coordinates:
     unit : (Monomial, fmpq)          the unit of frequency, ``w = unit[1] * unit[0]``
     phases : (Monomial, denominator)  each phase is an integer combination of ``monomial / denominator``
     generators : (number, denominator)  each exponent is a multiple of ``1 / denominator``
+    field : bits of one index: a float as a phase or a frequency, 0.1, makes indices of 55 bits
     """
 
     unit: tuple[Monomial, Any]
     phases: tuple[tuple[Monomial, int], ...]
     generators: tuple[tuple[int, int], ...]
+    field: int = FIELD
+
+    def exponents(self, monomial: Monomial) -> list[int]:
+        """A monomial as integers, one for each generator."""
+        table = dict(monomial)
+        return [int(table.get(g, 0) * d) for g, d in self.generators]
+
+    def indices(self, angle: Angle) -> list[int]:
+        """An angle as integers, one for each phase, and the frequency."""
+        frequency = dict(angle[0]).get(self.unit[0], 0)
+        table = dict(angle[1])
+        q = fmpq(frequency.numerator, frequency.denominator) / self.unit[1]
+        return [*(int(table.get(m, 0) * d) for m, d in self.phases), int(q.p)]
 
     def pack_monomial(self, monomial: Monomial) -> int:
         """A monomial as one integer."""
-        table = dict(monomial)
-        return pack([int(table.get(g, 0) * d) for g, d in self.generators])
+        return pack(self.exponents(monomial), self.field)
 
     def monomial(self, packed: int) -> Monomial:
         """The inverse of :meth:`pack_monomial`; relations such as ``sqrt(2)**2 = 2`` are not applied."""
-        e = unpack(packed, len(self.generators))
+        e = unpack(packed, len(self.generators), self.field)
         return tuple((g, _quotient(x, d)) for (g, d), x in zip(self.generators, e, strict=True) if x)
 
     def pack_angle(self, angle: Angle) -> int:
         """An angle as one integer, the frequency in the highest field."""
-        frequency = dict(angle[0]).get(self.unit[0], 0)
-        table = dict(angle[1])
-        q = fmpq(frequency.numerator, frequency.denominator) / self.unit[1]
-        return pack([*(int(table.get(m, 0) * d) for m, d in self.phases), int(q.p)])
+        return pack(self.indices(angle), self.field)
 
     def angle(self, packed: int) -> Angle:
         """The inverse of :meth:`pack_angle`."""
-        *indices, q = unpack(packed, len(self.phases) + 1)
+        *indices, q = unpack(packed, len(self.phases) + 1, self.field)
         phase = tuple((m, _quotient(x, d)) for (m, d), x in zip(self.phases, indices, strict=True) if x)
         rate = self.unit[1] * q
         return (((self.unit[0], _quotient(int(rate.p), int(rate.q))),) if q else ()), phase
 
     def frequency(self, packed: int) -> int:
         """The integer frequency of a packed angle."""
-        return unpack(packed, len(self.phases) + 1)[-1] if self.phases else packed
+        return unpack(packed, len(self.phases) + 1, self.field)[-1] if self.phases else packed
 
     def without_frequency(self, packed: int) -> int:
         """The packed angle whose frequency is put to zero."""
-        return packed - (self.frequency(packed) << (FIELD * len(self.phases)))
+        return packed - (self.frequency(packed) << (self.field * len(self.phases)))
 
 
 def _quotient(x: int, d: int) -> Any:
@@ -185,7 +196,11 @@ def _coordinates(entries: list[Modes], constants: list[Modes]) -> Coordinates | 
     monomials = [_join(m, inverse) for modes in entries for _, _, m in modes]
     initial = [m for modes in constants for _, _, m in modes]
     generators = tuple((g, lcm(*(_denominator(m, g) for m in [*monomials, *initial, unit[0]]))) for g in sorted(used))
-    return Coordinates(unit, _phases(every), generators)
+    narrow = Coordinates(unit, _phases(every), generators)
+    indices = [k for _, angle, _ in every for k in narrow.indices(angle)]
+    indices += [e for m in (*monomials, *initial, unit[0]) for e in narrow.exponents(m)]
+    largest = max(map(abs, indices), default=0)
+    return replace(narrow, field=max(FIELD, largest.bit_length() + GROWTH))
 
 
 def _denominator(monomial: Monomial, g: int) -> int:

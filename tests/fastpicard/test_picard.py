@@ -210,6 +210,20 @@ def test_both_engines_agree_where_coefficients_are_unusual(P):
 origins = st.sampled_from([S.One, pi, t0, Rational(-3, 2), t0 + pi, 2 * t0])
 
 
+@pytest.mark.parametrize(
+    "f, origin",
+    [(cos(t), 0.1), (cos(t + 0.1) + a, 0), (cos(2 * t + 0.3 * a), Rational(1, 10**12)), (cos(0.1 * t) - cos(2 * t), 0),
+     (cos(a * t) + cos(0.7 * a * t), 0.3), (a**0.1 * cos(t) + a ** Rational(1, 3), 0), (cos(10**12 * t) + sin(t), pi)],
+    ids=str)
+def test_phases_frequencies_and_exponents_may_be_any_dyadic_numbers(f, origin):
+    """The integers that stand for 0.1 have 55 bits, and are as good as small ones."""
+    P = [[0, 1], [f, 0]]
+    Phi = FundamentalMatrix(P, t, 4, origin)
+
+    assert Phi.series.diff() == read_matrix(P, t) @ Phi.to_order(3).series
+    assert all(PoissonSeries(x, t) == y for x, y in zip(Phi(origin), (1, 0, 0, 1), strict=True))
+
+
 @given(matrices(2), vectors, origins, st.integers(0, 1))
 def test_iterates_from_another_time_start_there_and_obey_the_law(P, x0, origin, n):
     """X_{n+1}' = P X_n and X_n(t0) = x0, for numbers, multiples of pi and symbols."""
