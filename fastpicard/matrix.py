@@ -56,7 +56,17 @@ class SeriesMatrix:
         """Apply a function of series to every entry."""
         return SeriesMatrix(tuple(tuple(function(modes) for modes in row) for row in self.rows), self.t)
 
+    def _check(self, other: Any) -> None:
+        """Refuse an operand that is no matrix of series in the same time."""
+        if not isinstance(other, SeriesMatrix):
+            raise BadTypeError(f"matrices of series go with each other, but the operand is {other!r}, a "
+                               f"{type(other).__name__}.  Use as_matrix() for SymPy's operations.")
+        if other.t != self.t:
+            raise BadInputError(f"both matrices must have the same time, but they have {self.t} and {other.t}.  "
+                                "Substitute one for the other.")
+
     def __add__(self, other: SeriesMatrix) -> SeriesMatrix:
+        self._check(other)
         if self.shape != other.shape:
             raise ShapeError("matrices can be added if their shapes agree, but they are "
                              f"{self.shape} and {other.shape}.  Check both shapes.")
@@ -64,6 +74,7 @@ class SeriesMatrix:
         return SeriesMatrix(rows, self.t)
 
     def __matmul__(self, other: SeriesMatrix) -> SeriesMatrix:
+        self._check(other)
         if self.shape[1] != other.shape[0]:
             raise ShapeError("matrices can be multiplied if inner sizes agree, but they are "
                              f"{self.shape} and {other.shape}.  Check both shapes.")

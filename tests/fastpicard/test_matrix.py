@@ -1,12 +1,14 @@
 """Matrices of series: laws of matrices, entry by entry."""
 
+import operator
+
 import mpmath
 import pytest
 import sympy
 from hypothesis import given
-from sympy import Matrix, cos, sin
+from sympy import Matrix, Symbol, cos, sin
 
-from fastpicard import PoissonSeries, SeriesMatrix, ShapeError
+from fastpicard import BadInputError, BadTypeError, PoissonSeries, SeriesMatrix, ShapeError, fast_picard
 from fastpicard.matrix import read_matrix
 from tests.oracles import closeness
 from tests.strategies import VALUES, a, b, matrices, plain_times, t
@@ -81,3 +83,16 @@ def test_matrices_print_themselves():
     assert repr(of(GENERAL)) == "<2 x 2 matrix of Poisson series in t>"
     assert r"\sin" in of(GENERAL)._repr_latex_()
     assert of(GENERAL).as_matrix() == GENERAL
+
+
+@pytest.mark.parametrize("operation", [operator.add, operator.matmul])
+def test_operands_are_matrices_of_series_in_the_same_time(operation):
+    """A matrix in s taken for one in t would give a wrong sum without a word."""
+    s = Symbol("s")
+    left, right = (fast_picard([[cos(x)]], x, [1], 1).series for x in (t, s))
+
+    with pytest.raises(BadInputError, match="same time, but they have t and s"):
+        operation(left, right)
+    for other in (2, Matrix([[1]]), None):
+        with pytest.raises(BadTypeError, match="matrices of series go with each other"):
+            operation(left, other)
