@@ -25,7 +25,7 @@ __all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column
            "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
 
 NAMES = ("mass", "length", "center", "gyration")
-LIGHT = 1e-40  # of the largest mass: stands for no mass, and no float64 result can tell
+LIGHT = 1e-90  # of the largest mass: stands for no mass, also where rods fold back to 1e-16 and masses are 1e12 apart
 
 
 def rod_row(m: Any, l: Any, H: Any, RR: Any) -> tuple[Any, ...]:

@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 from sympy import Rational, Symbol, cos, exp, pi, sin, sqrt
 
-from lagrangian import CompiledChain, QuantityError, Rod, Scene, SceneError, Support, chain as chains, redone, simulate
+from lagrangian import (
+    CompiledChain,
+    Ensemble,
+    QuantityError,
+    Rod,
+    Scene,
+    SceneError,
+    Support,
+    chain as chains,
+    redone,
+    simulate,
+)
 from lagrangian.floats import split
 from lagrangian.stepper import move
 
@@ -295,6 +306,19 @@ def test_rods_without_mass_are_the_limit_of_ever_lighter_rods(massless):
         exact = dense(light, l, H, R, 9.81, theta, omega)
 
         assert error(CompiledChain(m, l, H, R).acceleration(0, theta, omega), exact) < 4e-15
+
+
+@pytest.mark.parametrize("m", [[1, 0, 1], [1e6, 0, 1e-6], [1e-3, 0, 0, 1e3]])
+def test_rods_without_mass_that_fold_back_are_the_limit_too(m):
+    """Folded to the 1e-16 that pi lacks as a float, one chain, many and an ensemble: masses of 1e-110 at 300 digits."""
+    n, m = len(m), np.array(m, dtype=float)
+    theta, omega, ones = np.pi * (np.arange(n) % 2), np.arange(1.0, n + 1), np.ones(n)
+    exact = dense(np.where(m == 0, 1e-110, m), ones, ones, ones, 9.81, theta, omega)
+    chain = CompiledChain(m, ones, ones, ones)
+
+    assert error(chain.acceleration(0, theta, omega), exact) < 4e-15
+    assert error(chain.acceleration(0, theta[:, None], omega[:, None])[:, 0], exact) < 4e-15
+    assert error(Ensemble([m], ones, ones, ones).acceleration(0, [theta], [omega])[0], exact) < 4e-15
 
 
 def test_a_massless_rod_with_a_spring_has_no_answer():
