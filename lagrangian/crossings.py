@@ -103,9 +103,10 @@ def _times(motion: Pieces, event: Crossing, lengths: Any) -> Iterator[Any]:
     goal = cache(partial(motion.goal, event.angle))
     for step, length in enumerate(lengths):
         h = motion.plain(np.arange(POINTS + 1) * length / POINTS)
-        turns = motion.beyond(step, event.rod - 1, goal(0), h).astype(float) / TURN
+        done = motion.whole_turns(motion.beyond(step, event.rod - 1, goal(0), h[0]))
+        turns = motion.beyond(step, event.rod - 1, goal(done), h).astype(float) / TURN
         for turn in range(ceil(turns.min() - ROUNDED), floor(turns.max() + ROUNDED) + 1):
-            yield from _in_step(motion, event, step, goal(turn), h)
+            yield from _in_step(motion, event, step, goal(done + turn), h)
 
 
 def _in_step(motion: Pieces, event: Crossing, step: int, goal: Any, h: Any) -> Iterator[Any]:

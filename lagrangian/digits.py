@@ -28,7 +28,8 @@ from .precision import working
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
-__all__ = ["DigitRun", "Piece", "Steps", "best_order", "bits_for", "integrate_digits", "middle", "numbers"]
+__all__ = ["DigitRun", "Piece", "Steps", "best_order", "bits_for", "integrate_digits", "magnitude", "middle",
+           "numbers", "whole_turns"]
 
 GUARD = 30  # bits beyond those asked for
 
@@ -72,9 +73,14 @@ def _read(numbers: Any) -> Piece:
 
 
 class DigitRun(NamedTuple):
-    """Angles with turns and rates, shape (times, n), mpmath numbers; steps made; and the steps, where kept."""
+    """Angles with turns, angles within one turn and rates, mpmath numbers, and whole turns, Python's integers; steps.
+
+    The arrays have shape (times, n); ``steps`` is how many were made, ``pieces`` are they, where kept.
+    """
 
     theta: Any
+    angle: Any
+    turns: Any
     omega: Any
     steps: int
     pieces: list[Piece] | None
@@ -90,7 +96,9 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
     motion has no Taylor series, QuantityError where a step shrinks to nothing.
     """
     context = Context(digits)
-    with working(bits_for(digits)):
+    with working(64):
+        large = max(magnitude(Balls().number(x)) for x in (*theta, *times))
+    with working(bits_for(digits) + large):
         state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
         motion = (steps or Steps)(chain, state, digits, order)
         motion.pieces = [] if keep else None
@@ -100,8 +108,22 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
             found.append(motion.state_at(mark, marks[-1]))
             if progress is not None:
                 progress(float(mark))
-        angles, rates = (numbers([state[part] for state in found], context) for part in (0, 1))
-        return DigitRun(angles, rates, motion.count, motion.pieces)
+        angles, rates = (np.array([state[part] for state in found], dtype=object) for part in (0, 1))
+        turns = np.frompyfunc(whole_turns, 1, 1)(angles)
+        within = angles - turns * (2 * flint.arb.pi())
+        theta, within, omega = (numbers(x, context) for x in (angles, within, rates))
+        return DigitRun(theta, within, turns, omega, motion.count, motion.pieces)
+
+
+def magnitude(x: Any) -> int:
+    """The bits of a ball before the point: with so many more, the digits after it are kept."""
+    mantissa, exponent = map(int, x.mid().man_exp())
+    return max(0, exponent + mantissa.bit_length())
+
+
+def whole_turns(angle: Any) -> int:
+    """The turns nearest to an angle, a ball of enough bits."""
+    return int((angle / (2 * flint.arb.pi()) - 0.5).mid().ceil().unique_fmpz())
 
 
 def numbers(balls: Any, context: Any) -> Any:
@@ -206,7 +228,7 @@ class Steps:
         h = min(h, 2 * abs(remaining) + 1e-29 * abs(float(self.start)) + 1e-300,
                 FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega)))
         crawls = self.chain.support.function is not None and self.pace.crawls(float(self.start), float(end))
-        if not h > 1e-30 * abs(float(self.start)) or h != h or crawls:
+        if remaining != 0 and not h > 1e-30 * abs(float(self.start)) or h != h or crawls:
             raise QuantityError(f"the motion cannot be followed beyond t = {float(self.start):.6g}: the step shrinks "
                                 f"to {h:.3g}.  End before it, or give masses to rods without.")
         return flint.arb(h if remaining >= 0 else -h)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+import mpmath
 import numpy as np
 from sympy import Rational, floor, pi
 
@@ -62,9 +63,14 @@ def split(values: Any, angles: bool) -> Any:
     out = np.zeros((3, len(values)))
     for k, x in enumerate(values):
         exact = quantity(x, "a state")
-        whole = int(floor(exact / (2 * pi) + Rational(1, 2))) if angles and abs(exact) > 3 else 0
+        whole = _nearest_turns(exact) if angles and abs(exact) > 3 else 0
         out[:, k] = *high_low(exact - 2 * pi * whole if whole else exact), whole
     return out
+
+
+def _nearest_turns(exact: Any) -> int:
+    digits = 20 + max(0, int(0.302 * mpmath.mag(exact.evalf(5))))  # of them 20 after the point
+    return int(floor((exact / (2 * pi)).evalf(digits) + Rational(1, 2)))
 
 
 def wrapped(angle: Any, turns: Any) -> tuple[Any, Any]:

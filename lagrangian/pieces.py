@@ -21,7 +21,7 @@ from sympy import pi
 
 from .angles import TURN, TURN_LOW
 from .arithmetic import Balls
-from .digits import Piece, bits_for, middle, numbers
+from .digits import Piece, bits_for, magnitude, middle, numbers, whole_turns
 from .errors import QuantityError
 from .floats import split
 from .precision import working
@@ -102,6 +102,10 @@ class Pieces:
         """How far an angle is beyond a goal, modulo a turn, ``h`` after the start of a step; shape of h; rad."""
         raise NotImplementedError
 
+    def whole_turns(self, angle: Any) -> int:
+        """The turns nearest to an angle; exact, however many they are."""
+        raise NotImplementedError
+
     def rate(self, step: int, rod: int, h: Any) -> Any:
         """The rate of a rod ``h`` after the start of a step; rad/s."""
         raise NotImplementedError
@@ -149,6 +153,9 @@ class FloatPieces(Pieces):
         high, rest = total(self.high[step, rod], -goal[0])
         return high + (rest + (self.low[step, rod] - goal[1]) + _horner(self.powers[step, rod], h) * h)
 
+    def whole_turns(self, angle: Any) -> int:
+        return round(float(angle) / TURN)
+
     def rate(self, step: int, rod: int, h: Any) -> Any:
         return _horner(self.rates[step, rod], h)
 
@@ -168,7 +175,8 @@ class BallPieces(Pieces):
     """
 
     def __init__(self, pieces: Sequence[Piece], context: Any, times: Sequence[Any]) -> None:
-        self.context, self.bits = context, bits_for(context.dps)
+        large = max(magnitude(x) for p in pieces for x in (p.start, *(angle[0] for angle in p.angles)))
+        self.context, self.bits = context, bits_for(context.dps) + large
         with working(self.bits):
             ends = self.given([x for end in (times[0], times[-1]) for x in (end, float(end))])
         self.times, self.span = [times[0], times[-1]], (ends.min(), ends.max())
@@ -199,6 +207,9 @@ class BallPieces(Pieces):
 
     def beyond(self, step: int, rod: int, goal: Any, h: Any) -> Any:
         return middle(np.frompyfunc(self.angles[step][rod], 1, 1)(h) - goal)
+
+    def whole_turns(self, angle: Any) -> int:
+        return whole_turns(angle)
 
     def rate(self, step: int, rod: int, h: Any) -> Any:
         return self.angles[step][rod].derivative()(h).mid()

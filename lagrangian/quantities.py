@@ -57,7 +57,7 @@ def real_number(value: Any, name: str) -> Any:
 
 def to_float(exact: Any) -> float:
     """An exact SymPy number, or any real number, as the nearest float."""
-    return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30))
+    return float(exact) if getattr(exact, "is_Rational", True) else float(exact.evalf(30, maxn=1200))
 
 
 def high_low(exact: Any) -> tuple[float, float]:

@@ -232,22 +232,20 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, given
     exact_times = [quantity(x, "times") for x in given_times]
     while True:
         kind, run, finer = _twice(chain, exact[0], exact[1], exact_times, used, dense or bool(events), report)
-        angles, rates = run.theta, run.omega
-        context = angles.flat[0].context
-        differences = [max(abs(x - context.convert(y)) for x, y in zip(*rows, strict=True))
-                       for rows in zip(angles, finer.theta, strict=True)]
-        error = SAFETY * np.maximum.accumulate(np.array([float(x) for x in differences])) + 10.0**-used
+        context = run.angle.flat[0].context
+        turned = (run.turns - finer.turns) * (2 * context.pi)
+        apart = abs(run.angle - np.frompyfunc(context.convert, 1, 1)(finer.angle) + turned)
+        error = SAFETY * np.maximum.accumulate(apart.max(axis=1).astype(float)) + 10.0**-used
         if digits is not None or error[-1] <= accuracy:
             break
         used += 2 + ceil(log10(error[-1] / accuracy))
-    turns = np.array([[int(context.nint(x / (2 * context.pi))) for x in row] for row in angles])
-    angle = angles - turns * (2 * context.pi)
-    energy = chain.energy(np.asarray(angle if chain.springs is None else angles, dtype=float).T,
-                          np.asarray(rates, dtype=float).T)
+    energy = chain.energy((run.angle if chain.springs is None else run.theta).astype(float).T,
+                          run.omega.astype(float).T)
     motion = BallPieces(run.pieces, context, exact_times) if run.pieces is not None else None
     found = find_crossings(motion, events, exact_times[-1]) if motion is not None else {}
-    return Trajectory(times, angles, rates, turns, angle, energy, error, accuracy, f"taylor, {used} digits in {kind}",
-                      run.steps, best_order(used), chain, found, motion if dense else None)
+    return Trajectory(times, run.theta, run.omega, _whole(run.turns), run.angle, energy, error, accuracy,
+                      f"taylor, {used} digits in {kind}", run.steps, best_order(used), chain, found,
+                      motion if dense else None)
 
 
 def _twice(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, keep: bool,

@@ -137,7 +137,7 @@ def advance(rods: Any, damping: Any, springs: Any, pull: Any, waves: Any, tolera
             if longest * abs(state[3, k]) > FARTHEST:
                 longest = FARTHEST / abs(state[3, k])
         h = h if h < longest else longest
-        if not h > 1e-15 * abs(clock[0]):
+        if remaining != 0.0 and not h > 1e-15 * abs(clock[0]):
             return STUCK, step, found
         if remaining < 0.0:
             h = -h

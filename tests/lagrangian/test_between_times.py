@@ -307,3 +307,43 @@ def test_a_motion_cannot_be_written_to(digits):
                       found.events["x"]):
             with pytest.raises(ValueError, match="read-only"):
                 array[0] = 7
+
+
+@pytest.mark.parametrize("digits", [20, 40])
+@pytest.mark.parametrize("angle", [1e6, 1e40, -1e300])
+def test_large_angles_lose_no_digit(digits, angle):
+    """What is left of 1e300 rad within a turn has the digits asked for, and so have its motion and its crossings."""
+    with mpmath.workdps(400):
+        turns = int(mpmath.nint(angle / (2 * mpmath.pi)))
+        rest = angle - 2 * mpmath.pi * turns
+    options = {"digits": digits, "dense": True, "events": {"down": Crossing(1, 0)}}
+    motion = simulate(TWO, [angle, 2], [0, 0], [0, 1], **options)
+    same = simulate(TWO, [Rational(angle) - 2 * pi * turns, 2], [0, 0], [0, 1], **options | {"digits": digits + 20})
+
+    assert motion.turns[0, 0] == turns and abs(motion.wrapped[0, 0] - rest) <= motion.error[0]
+    assert (motion.turns - same.turns).tolist() == [[turns, 0]] * 2
+    assert apart(motion.wrapped[1], same.wrapped[1]) <= motion.error[1] < 1e-15
+    assert len(same.events["down"]) > 0 and apart(motion.events["down"], same.events["down"]) < motion.error[1]
+
+
+@pytest.mark.parametrize("digits", [None, 20])
+def test_an_angle_of_1e300_can_be_followed(digits):
+    """In floats too, from lists and from arrays; what is left of it within a turn is right."""
+    with mpmath.workdps(400):
+        rest = float(mpmath.fmod(1e300, 2 * mpmath.pi))
+    for start in ([1e300, 2], np.array([1e300, 2])):
+        motion = simulate(TWO, start, [0, 0], [0, 1], digits=digits)
+        assert abs(math.remainder(float(motion.wrapped[0, 0]) - rest, 2 * math.pi)) < 4e-15
+
+
+def test_times_of_1e16_have_the_digits_asked_for():
+    """The chain does not know what time it is."""
+    late, early = (simulate(TWO, [1, 2], [0, 0], [start, start + 2], digits=20) for start in (10**16, 0))
+    assert apart(late.theta, early.theta) < 1e-17 and late.error[-1] < 1e-17
+
+
+@pytest.mark.parametrize("digits", [None, 20])
+def test_a_late_motion_of_no_length_is_its_start(digits):
+    """No step is needed, however small steps are beside the time."""
+    motion = simulate(TWO, [1, 2], [3, 0], [1e300, 1e300], digits=digits)
+    assert motion.theta.tolist() == [[1, 2]] * 2 and motion.accurate
