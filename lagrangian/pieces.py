@@ -57,6 +57,8 @@ class Pieces:
         Raises QuantityError where a time is none, or lies outside the span; TextError for text.
         """
         refuse_text(t, "t")
+        if np.ndim(t) > 1:
+            raise QuantityError(f"t has shape {np.shape(t)}: give one time, or a list of times.")
         with working(self.bits):
             times = self.given(t)
             steps = self.holding(times)

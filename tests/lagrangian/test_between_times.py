@@ -347,3 +347,11 @@ def test_a_late_motion_of_no_length_is_its_start(digits):
     """No step is needed, however small steps are beside the time."""
     motion = simulate(TWO, [1, 2], [3, 0], [1e300, 1e300], digits=digits)
     assert motion.theta.tolist() == [[1, 2]] * 2 and motion.accurate
+
+
+@pytest.mark.parametrize("digits", [None, 20])
+def test_tables_of_times_are_refused(digits):
+    """They were taken for rods."""
+    motion = simulate(TWO, [1, 2], [0, 0], [0, 1], digits=digits, dense=True)
+    with pytest.raises(QuantityError, match=r"\(2, 2\)"):
+        motion.at([[0, 1], [0, 0.5]])
