@@ -77,7 +77,7 @@ def _exact(value: Any, name: str) -> Any:
         return Integer(int(value))
     if isinstance(value, AnyRational):
         return Rational(int(value.numerator), int(value.denominator))
-    if isinstance(value, (Decimal, Real, AnyMpf)):
+    if isinstance(value, AnyMpf) or (isinstance(value, (Decimal, Real)) and hasattr(value, "as_integer_ratio")):
         if not mpmath.isfinite(value) if isinstance(value, AnyMpf) else not math.isfinite(value):
             raise QuantityError(f"{name} is {value}, which is not finite: give a finite number or a Symbol.")
         return Rational(*_ratio(value))
