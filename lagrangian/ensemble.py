@@ -35,8 +35,8 @@ class Ensemble:
     ``Ensemble(mass, length, center, gyration, gravity=9.81, support_acceleration=(0, 0), damping=None, springs=None,
     upright=True)``
 
-    ``ensemble[j]`` is chain j as a :class:`lagrangian.CompiledChain`, ``len(ensemble)`` how many there are.  From
-    symbols: ``scene.compile({m: array})``.
+    ``ensemble[j]`` is chain j as a :class:`lagrangian.CompiledChain`, ``ensemble[:3]`` the ensemble of three,
+    ``len(ensemble)`` how many there are.  From symbols: ``scene.compile({m: array})``.
 
     Parameters
     ----------
@@ -84,7 +84,12 @@ class Ensemble:
     def __len__(self) -> int:
         return len(self._columns[0])
 
-    def __getitem__(self, j: int) -> CompiledChain:
+    def __getitem__(self, j: Any) -> Any:
+        """Chain j, a :class:`lagrangian.CompiledChain`; of a slice the ensemble of its chains."""
+        if isinstance(j, slice):
+            mass, length, center, gyration = (x[j] for x in self._columns)
+            damping, springs = (None if x is None else x[j] for x in (self.damping, self.springs))
+            return Ensemble(mass, length, center, gyration, self.gravity, self.support, damping, springs, self.upright)
         try:
             j = range(len(self))[index(j)]
         except IndexError:

@@ -11,12 +11,14 @@ from decimal import Decimal
 from numbers import Integral, Rational as AnyRational, Real
 from typing import Any
 
+import flint
 import mpmath
+import numpy as np
 from sympy import Expr, Float, I, Integer, Rational, nan, oo, zoo
 
 from .errors import NotAQuantityError, QuantityError, TextError
 
-__all__ = ["AnyMpf", "high_low", "quantity", "real_number", "refuse_text", "to_float"]
+__all__ = ["AnyMpf", "high_low", "quantity", "real_number", "refuse_mask", "refuse_text", "to_float"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
 
@@ -28,6 +30,12 @@ def refuse_text(value: Any, name: str) -> None:
             f"{name} is the text {value!r}, and text is never evaluated: give a number, or a SymPy expression "
             f"such as Symbol('m') or Rational(1, 2)."
         )
+
+
+def refuse_mask(values: Any, name: str) -> None:
+    """Raise :class:`NotAQuantityError` for an array of which some entries are masked."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise NotAQuantityError(f"{name} is an array with a mask, and every entry counts here: give an array without.")
 
 
 def quantity(value: Any, name: str) -> Any:
@@ -75,6 +83,8 @@ def _exact(value: Any, name: str) -> Any:
         raise NotAQuantityError(f"{name} is {value}, a truth value: give a number or a SymPy expression.")
     if isinstance(value, Integral):
         return Integer(int(value))
+    if isinstance(value, (flint.fmpz, flint.fmpq)):
+        return Rational(int(value.numerator), int(value.denominator))
     if isinstance(value, AnyRational):
         return Rational(int(value.numerator), int(value.denominator))
     if isinstance(value, AnyMpf) or (isinstance(value, (Decimal, Real)) and hasattr(value, "as_integer_ratio")):

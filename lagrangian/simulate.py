@@ -32,7 +32,7 @@ from .equations import EquationsOfMotion
 from .errors import DriveError, NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
 from .pieces import BallPieces, FloatPieces
-from .quantities import quantity, refuse_text
+from .quantities import quantity, refuse_mask, refuse_text
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .swings import swing
 from .trajectories import Trajectories, chains_and_states
@@ -301,6 +301,7 @@ def _digits(asked: Any) -> int | None:
 
 def _times(times: Any) -> tuple[Any, Any]:
     """Times as floats, and as they were given: the same floats, or exact numbers."""
+    refuse_mask(times, "times")
     given: Any = _plain_times(times)
     if given is None:
         given = _quantities(times, "times", "a list of times, the first of which is that of theta0")
@@ -336,6 +337,7 @@ def _quantities(values: Any, name: str, wanted: str) -> list[Any]:
 
 
 def _initial(values: Any, name: str, n: int) -> Any:
+    refuse_mask(values, name)
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiu":
         found: Any = values.astype(np.float64)
         if not np.isfinite(found).all():

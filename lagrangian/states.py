@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .errors import SceneError
-from .quantities import real_number, refuse_text, to_float
+from .quantities import real_number, refuse_mask, refuse_text, to_float
 
 __all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "why_no_answer"]
 
@@ -32,6 +32,7 @@ def float_time(t: Any) -> float:
 def floats(values: Any, name: str) -> Any:
     """Real numbers of any kind, in nested lists or an array, as contiguous float64 of the same shape."""
     refuse_text(values, name)
+    refuse_mask(values, name)
     try:
         array = np.asarray(values)
     except ValueError:  # rows of unequal length

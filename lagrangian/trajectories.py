@@ -18,7 +18,9 @@ __all__ = ["Trajectories", "chains_and_states"]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Trajectories:
-    """The motions of many chains, ``motions[j]`` that of chain j, a :class:`Trajectory`.  Immutable.
+    """The motions of many chains, ``motions[j]`` that of chain j, a :class:`Trajectory`, ``motions[:3]`` of three.
+
+    Immutable.
 
     Attributes
     ----------
@@ -35,8 +37,8 @@ class Trajectories:
     def __len__(self) -> int:
         return len(self.members)
 
-    def __getitem__(self, j: int) -> Trajectory:
-        return self.members[j]
+    def __getitem__(self, j: Any) -> Any:
+        return Trajectories(self.members[j]) if isinstance(j, slice) else self.members[j]
 
     def __iter__(self) -> Iterator[Trajectory]:
         return iter(self.members)
@@ -98,7 +100,7 @@ class Trajectories:
         return labelled(self, self.members, ("chain", "time", "rod"))
 
     def __repr__(self) -> str:
-        return f"Trajectories({len(self)} chains, the first of which is {self[0]})"
+        return f"Trajectories({len(self)} chains" + (f", the first of which is {self[0]})" if self.members else ")")
 
 
 def chains_and_states(system: Any, theta0: Any, omega0: Any) -> list[tuple[Any, Any, Any]] | None:

@@ -102,6 +102,18 @@ def test_symbolic_equations_move_clouds_too_and_are_compiled_once(cloud, monkeyp
     assert same(motions, [simulate(equations, x, [0.0, 0.0], TIMES) for x in cloud[:2]])
 
 
+def test_some_of_many_are_many(ensemble, cloud):
+    """Slices of an ensemble and of its motions; an empty one has no chain to follow."""
+    some = ensemble[1:3]
+
+    assert isinstance(some, Ensemble) and some.shape == (2, 2)
+    motions, later = simulate(ensemble, cloud, [0.0, 0.5], TIMES)[1:3], simulate(some, cloud[1:3], [0.0, 0.5], TIMES)
+    assert isinstance(motions, Trajectories) and same(motions, later)
+    assert repr(motions[:0]) == "Trajectories(0 chains)"
+    with pytest.raises(SceneError, match="shape"):
+        ensemble[4:]
+
+
 def test_the_verdict_counts_the_chains_that_are_accurate(chain):
     """One at rest, one in chaos: the worst has its say."""
     motions = simulate(chain, [[0.0, 0.0], [3.0, 3.0]], [0.0, 0.0], [0.0, 60.0])

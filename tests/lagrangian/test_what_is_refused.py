@@ -3,6 +3,7 @@
 import math
 from fractions import Fraction
 
+import flint
 import mpmath
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, cos, na
 from lagrangian import (
     CompiledChain,
     DriveError,
+    Ensemble,
     InhomogeneousError,
     LagrangianError,
     NameClashError,
@@ -28,6 +30,7 @@ from lagrangian import (
     euler_lagrange,
     linearize,
     normal_modes,
+    simulate,
 )
 
 m, l, g, t, epsilon, omega0 = symbols("m l g t epsilon omega0")
@@ -167,3 +170,29 @@ def test_numbers_that_sympy_cannot_tell_apart_make_a_rod():
     assert abs(chain.acceleration(0, [1.0], [0.0])[0] + 2 * math.sin(1)) < 1e-15
     with pytest.raises(QuantityError, match="gyration >= "):
         CompiledChain([1.0], [1.0], [1], [sin(1) ** 2 + cos(1) ** 2 - Rational(1, 10**9)])
+
+
+MASKED = np.ma.array([1.0, 2.0], mask=[False, True])
+
+
+@pytest.mark.parametrize("ask", [
+    lambda chain: chain.acceleration(0, MASKED, [0.0, 0.0]),
+    lambda chain: simulate(chain, MASKED, [0.0, 0.0], [0, 1]),
+    lambda chain: simulate(chain, [0.0, 0.0], [0.0, 0.0], MASKED),
+    lambda chain: CompiledChain(MASKED, [1, 1], [1, 1], [1, 1]),
+    lambda chain: Ensemble([[1, 1]] * 3, MASKED, 1, 1),
+])
+def test_masks_are_not_lost(ask):
+    """The entries behind them would count."""
+    with pytest.raises(NotAQuantityError, match="mask"):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
+def test_numbers_of_flint_are_numbers():
+    """Rationals and integers, as lengths and as angles."""
+    third = flint.fmpq(1, 3)
+    chain = CompiledChain([1, 1], [third, flint.fmpz(2)], [0, 1], [third, 2])
+
+    expected = CompiledChain([1, 1], [Rational(1, 3), 2], [0, 1], [Rational(1, 3), 2])
+    assert (chain.rods == expected.rods).all()
+    assert (chain.acceleration(0, [third, 0], [0, 1]) == expected.acceleration(0, [Fraction(1, 3), 0], [0, 1])).all()
