@@ -26,7 +26,7 @@ from .shaking import shaking_of
 from .states import float_time, floats, is_plain, why_no_answer
 from .torques import joint_torques, joint_torques_of_each
 
-__all__ = ["Ensemble"]
+__all__ = ["Ensemble", "place"]
 
 
 class Ensemble:
@@ -55,8 +55,8 @@ class Ensemble:
     Speed and accuracy
     ------------------
     Accelerations are as good as those of a :class:`lagrangian.CompiledChain`, within 4e-15 of the largest, and those
-    in doubt are found again.  Chains of two to ten rods, a thousand at once: 14 to 20 ns a link and chain where all are
-    even with free joints, 18 to 27 where not, 1.5 to 2 times what common rods cost (``benchmarks/chains.py many``).
+    in doubt are found again.  Chains of two to ten rods, a thousand at once: 12 to 20 ns a link and chain where all are
+    even with free joints, 16 to 27 where not, 1.3 to 2 times what common rods cost (``benchmarks/chains.py many``).
     Without numba NumPy's rows do it, tens of times slower.
 
     >>> ensemble = Ensemble([[1, 1], [1, 2], [1, 3]], [1, 1], [1, 1], [1, 1], gravity=10)
@@ -85,21 +85,21 @@ class Ensemble:
         return len(self._columns[0])
 
     def __getitem__(self, j: Any) -> Any:
-        """Chain j, a :class:`lagrangian.CompiledChain`; of a slice the ensemble of its chains."""
+        """Chain j, a :class:`lagrangian.CompiledChain`; of a slice the ensemble of its chains.
+
+        Raises IndexError where there is no chain j, SceneError where a slice holds none.
+        """
         if isinstance(j, slice):
-            mass, length, center, gyration = (x[j] for x in self._columns)
-            damping, springs = (None if x is None else x[j] for x in (self.damping, self.springs))
-            return Ensemble(mass, length, center, gyration, self.gravity, self.support, damping, springs, self.upright)
-        try:
-            j = range(len(self))[index(j)]
-        except IndexError:
-            raise IndexError(f"the ensemble has {len(self)} chains, counted from 0, and {j} is none of them.") from None
+            return Ensemble(*self._constants_of(j))
+        j = place(j, len(self), "the ensemble has")
         if j not in self._members:
-            mass, length, center, gyration = (x[j] for x in self._columns)
-            damping, springs = (None if x is None else x[j] for x in (self.damping, self.springs))
-            self._members[j] = CompiledChain(mass, length, center, gyration, self.gravity, self.support, damping,
-                                             springs, self.upright)
+            self._members[j] = CompiledChain(*self._constants_of(j))
         return self._members[j]
+
+    def _constants_of(self, which: int | slice) -> tuple[Any, ...]:
+        """Of some chains, or of one, what :class:`Ensemble` and :class:`lagrangian.CompiledChain` are made from."""
+        joints = (None if x is None else x[which] for x in (self.damping, self.springs))
+        return *(x[which] for x in self._columns), self.gravity, self.support, *joints, self.upright
 
     def __iter__(self) -> Iterator[CompiledChain]:
         return map(self.__getitem__, range(len(self)))
@@ -186,6 +186,14 @@ class Ensemble:
     def _even(self) -> bool:
         """Whether chains are not asked for their doubt, as for :class:`lagrangian.CompiledChain`."""
         return self.damping is None is self.springs and bool(even(*float_row(*self._columns)[:3]).all())
+
+
+def place(j: Any, count: int, these: str) -> int:
+    """Chain j of ``count``, counted from the end where j is negative; IndexError where there is none."""
+    try:
+        return range(count)[index(j)]
+    except IndexError:
+        raise IndexError(f"{these} {count} chains, counted from 0, and {j} is none of them.") from None
 
 
 def _repeated(given: dict[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .ensemble import Ensemble
+from .ensemble import Ensemble, place
 from .errors import SceneError
 from .trajectory import Trajectory, labelled, locked
 
@@ -38,7 +38,13 @@ class Trajectories:
         return len(self.members)
 
     def __getitem__(self, j: Any) -> Any:
-        return Trajectories(self.members[j]) if isinstance(j, slice) else self.members[j]
+        """The motion of chain j, a :class:`Trajectory`; of a slice those of its chains.
+
+        Raises IndexError where there is no chain j.
+        """
+        if isinstance(j, slice):
+            return Trajectories(self.members[j])
+        return self.members[place(j, len(self), "these are the motions of")]
 
     def __iter__(self) -> Iterator[Trajectory]:
         return iter(self.members)

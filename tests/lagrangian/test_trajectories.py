@@ -112,6 +112,8 @@ def test_some_of_many_are_many(ensemble, cloud):
     assert repr(motions[:0]) == "Trajectories(0 chains)"
     with pytest.raises(SceneError, match="shape"):
         ensemble[4:]
+    with pytest.raises(IndexError, match="motions of 2 chains, counted from 0, and 2 is none"):
+        motions[2]
 
 
 def test_the_verdict_counts_the_chains_that_are_accurate(chain):
