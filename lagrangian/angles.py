@@ -6,14 +6,15 @@ dropping ``e`` would cost 1e-10 where angles are 1e6 apart.  With ``n`` the inte
     r = d - n pi/2,   |r| <= pi/4,
 
 where ``pi/2`` is held in three parts, the first two short enough for ``n`` times them to be exact while
-``|n| < 2**20``.  ``sin r`` and ``cos r`` are their Taylor polynomials of degree 17 and 16, whose remainders,
-``(pi/4)**19/19!`` and ``(pi/4)**18/18!``, are below 1e-17.  Nothing branches, so that loops over many angles
-vectorise.  Measured against 40 digits, the errors stay below 2.3e-16 in relative terms.
+``|n| < 2**20``.  ``sin r = r + r**3 S(r**2)`` and ``cos r = 1 - r**2/2 + r**4 C(r**2)`` with the polynomials S and C of
+degree 5 whose largest relative error in sine and cosine is least (Remez), 3.8e-18 and 5.7e-20 with their coefficients
+rounded.  Nothing branches, so that loops over many angles vectorise, and the terms of a polynomial are taken in pairs,
+which wait less for one another.  Against 40 digits the errors stay below 4e-16 in relative terms, also where a sine or
+cosine nearly vanishes.
 """
 
 from __future__ import annotations
 
-from math import factorial
 from typing import Any
 
 import numpy as np
@@ -32,8 +33,12 @@ LARGEST = 1.6e6  # beyond it, n no longer fits
 TURN = float.fromhex("0x1.921fb54442d18p+2")
 TURN_LOW = float.fromhex("0x1.1a62633145c07p-52")
 
-S3, S5, S7, S9, S11, S13, S15, S17 = ((-1) ** (k // 2) / factorial(k) for k in range(3, 18, 2))
-C4, C6, C8, C10, C12, C14, C16 = ((-1) ** (k // 2) / factorial(k) for k in range(4, 17, 2))
+S0, S1, S2, S3, S4, S5 = map(float.fromhex, (
+    "-0x1.5555555555548p-3", "0x1.111111110f764p-7", "-0x1.a01a019bf35b8p-13",
+    "0x1.71de35603950dp-19", "-0x1.ae5e5572ecc0cp-26", "0x1.5d8e825ffa885p-33"))
+C0, C1, C2, C3, C4, C5 = map(float.fromhex, (
+    "0x1.555555555554bp-5", "-0x1.6c16c16c15015p-10", "0x1.a01a019c8f24cp-16",
+    "-0x1.27e4f7f19077dp-22", "0x1.1ee9dbce1da80p-29", "-0x1.8fa683eca7a1dp-37"))
 
 
 @inlined
@@ -63,18 +68,19 @@ def sines(d: Any, e: Any) -> tuple[Any, Any]:
     r = first - second
     e = e + (((first - r) - second) - n * HALF_3)
     z = r * r
-    cubic = r * z * (S3 + z * (S5 + z * (S7 + z * (S9 + z * (S11 + z * (S13 + z * (S15 + z * S17)))))))
+    w = z * z
+    cubic = r * z * ((S0 + z * S1) + w * ((S2 + z * S3) + w * (S4 + z * S5)))
     half = 0.5 * z
     lead = 1.0 - half
-    rest = ((1.0 - lead) - half) + z * z * (C4 + z * (C6 + z * (C8 + z * (C10 + z * (C12 + z * (C14 + z * C16))))))
+    rest = ((1.0 - lead) - half) + w * ((C0 + z * C1) + w * ((C2 + z * C3) + w * (C4 + z * C5)))
     odd = r + (cubic + e * (lead + rest))
     even = lead + (rest - e * (r + cubic))
-    quarter = n - 4.0 * ((0.25 * n + ROUND) - ROUND)  # n mod 4, between -2 and 2
-    swap = n - 2.0 * ((0.5 * n + ROUND) - ROUND) != 0.0
-    s = even if swap else odd
-    c = odd if swap else even
-    turned = quarter == 2.0 or quarter == -2.0
-    return (-s if turned or quarter == -1.0 else s), (-c if turned or quarter == 1.0 else c)
+    halves = (0.5 * n + ROUND) - ROUND
+    quarter = n - 2.0 * halves  # -1, 0 or 1
+    parity = halves - 2.0 * ((0.5 * halves + ROUND) - ROUND)
+    sign = 1.0 - 2.0 * (parity * parity)
+    turn = sign * quarter
+    return (turn * even, -(turn * odd)) if quarter != 0.0 else (sign * odd, sign * even)
 
 
 @inlined

@@ -308,8 +308,9 @@ class CompiledChain:
         if has_numba() and theta.ndim == 2:
             doubtful = None if self._even else np.empty(theta.shape[1], bool)
             work = np.empty((n, (6 if self._even else 8) * LANES))
-            if machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, doubtful, out):
-                return True, False if doubtful is None else doubtful
+            done, again = machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, doubtful, out)
+            if done:
+                return True, doubtful if again else False
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)
 
     def torques(self, theta: Any, omega: Any) -> Any:

@@ -1,6 +1,6 @@
 r"""Chains that differ in their rods, as many as one likes: an ensemble over masses, lengths, dampers or springs.
 
-In float64 all of them go through the recursion together (:mod:`lagrangian.blocks`).  Whatever else is asked, digits,
+In float64 all of them go through the recursion together (:mod:`lagrangian.lanes`).  Whatever else is asked, digits,
 balls, an answer in doubt, a motion, is asked of one chain after the other, and each is a
 :class:`lagrangian.CompiledChain`.
 """
@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 
 from .arithmetic import arithmetic_of
-from .blocks import accelerate_blocks, in_blocks
 from .chain import CompiledChain
 from .constants import NAMES, check_damping, check_joints, checked, even, float_row
 from .errors import QuantityError, SceneError
-from .lanes import LANES, accelerate_rows
+from .lanes import LANES, accelerate_lanes, accelerate_rows, in_lanes
 from .machine import has_numba, machine
 from .redone import in_pairs, rows_in_pairs
 from .shaking import shaking_of
@@ -79,7 +78,8 @@ class Ensemble:
         check_joints(self._columns[0], [self.damping, self.springs])
         self.gravity, self.support, self.upright = gravity, shaking_of(support_acceleration), upright
         self._members: dict[int, CompiledChain] = {}
-        self.gravity = self[0].gravity  # exact, once the first chain has checked it
+        self._first = self[0]
+        self.gravity = self._first.gravity  # exact, once the first chain has checked it
 
     def __len__(self) -> int:
         return len(self._columns[0])
@@ -125,27 +125,27 @@ class Ensemble:
                             ((theta, "theta"), (omega, "omega")))
             return np.stack([chain.acceleration(t, *state) for chain, *state in zip(self, theta, omega, strict=True)])
         t = float_time(t)
-        theta, omega = (self._checked(floats(x, name), name) for x, name in ((theta, "theta"), (omega, "omega")))
-        out = np.empty(self.shape)
-        ax, ay = self[0].steady_pull if self.support.steady else map(float, self[0].pull(t))
+        theta, omega = self._checked(floats(theta, "theta"), "theta"), self._checked(floats(omega, "omega"), "omega")
+        out = np.empty_like(theta)
+        ax, ay = self._first.steady_pull if self.support.steady else map(float, self._first.pull(t))
         done, doubtful = self._accelerated(theta, omega, ax, ay, out)
         if not done:
             raise QuantityError(why_no_answer(t, theta, omega))
-        if np.any(doubtful):
+        if doubtful is not False and np.any(doubtful):
             out[doubtful] = self._again(t, doubtful, theta[doubtful], omega[doubtful])
         return out
 
     def _again(self, t: Any, doubtful: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of some chains from exact numbers: all at once in pairs, or one after the other."""
         constants = [None if x is None else x[..., doubtful] for x in self._in_pairs]
-        found = in_pairs(constants, self[0].fine_pull(t), theta.T, omega.T)
+        found = in_pairs(constants, self._first.fine_pull(t), theta.T, omega.T)
         if found is not None:
             return found.T
         which = np.flatnonzero(doubtful).tolist()
         return np.stack([self[j].acceleration(t, *state) for j, *state in zip(which, theta, omega, strict=True)])
 
     def _checked(self, state: Any, name: str) -> Any:
-        if state.shape != self.shape:
+        if state.shape != self._columns[0].shape:
             raise SceneError(f"the ensemble has {len(self)} chains of {self.shape[1]} rods, and {name} has shape "
                              f"{state.shape}: give shape {self.shape}.")
         return state
@@ -154,9 +154,12 @@ class Ensemble:
         """Write ``theta''`` in float64 alone; whether all are finite, and which chains are in doubt."""
         tau = self._torques(theta, omega)
         if has_numba():
-            doubtful = None if self._even else np.empty(len(self._blocks) * LANES, bool)
-            if machine(accelerate_blocks)(self._blocks, theta, omega, tau, ax, ay, doubtful, out):
-                return True, False if doubtful is None else doubtful[:len(self)]
+            doubtful = None if self._even else np.empty(len(self), bool)
+            work = np.empty((self.shape[1], (6 if self._even else 8) * LANES))
+            done, again = machine(accelerate_lanes)(self._lanes, theta.T, omega.T, None if tau is None else tau.T,
+                                                    ax, ay, work, doubtful, out.T)
+            if done:
+                return True, doubtful if again else False
         rods = np.stack([row.T for row in float_row(*self._columns)], axis=1)
         return accelerate_rows(rods, theta.T, omega.T, None if tau is None else tau.T, ax, ay, out.T)
 
@@ -172,8 +175,9 @@ class Ensemble:
         return tau
 
     @cached_property
-    def _blocks(self) -> Any:
-        return in_blocks(float_row(*self._columns))
+    def _lanes(self) -> Any:
+        m, l, _, Ic, J, *_ = float_row(*self._columns)
+        return in_lanes(m, l, self._columns[2], Ic, J)
 
     @cached_property
     def _in_pairs(self) -> Any:

@@ -1,9 +1,13 @@
 """Many chains at once: the recursion of :mod:`lagrangian.recursion` with one chain in every lane of a vector register.
 
-Each chain has its own state, arrays of shape (n, chains); the rods are the same for all, or each of LANES chains has
-its own (:mod:`lagrangian.blocks`).  Chains are taken LANES at a time; whatever is carried from link to link is one flat
-array whose rows lie LANES apart, a constant known when the loops are translated, so that the compiler sees that rows do
-not overlap and the loop over lanes becomes vector instructions.
+Each chain has its own state, arrays of shape (n, chains) in any order of memory; the rods are the same for all, or each
+chain has its own.  Chains are taken LANES at a time; whatever is carried from link to link is one flat array whose rows
+lie LANES apart, a constant known when the loops are translated, so that the compiler sees that rows do not overlap and
+the loop over lanes becomes vector instructions.  States are copied to such rows first, a link at a time.
+
+Rods of their own are five numbers, m, l, H, Ic and J, from which the other constants follow without cancellation:
+reading them from memory costs more than that.  They stand in the order in which the loops go through them: LANES
+chains after LANES chains, rod by rod from the tip, each number for these chains side by side.
 """
 
 from __future__ import annotations
@@ -13,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines, sines_of_large_joints
-from .machine import allocating
+from .machine import allocating, inlined
 from .recursion import (
     DOUBT,
     accelerate_rods,
@@ -26,60 +30,92 @@ from .recursion import (
     turned_inertia,
 )
 
-__all__ = ["LANES", "accelerate_lanes", "accelerate_rows"]
+__all__ = ["LANES", "accelerate_lanes", "accelerate_rows", "in_lanes"]
 
 LANES = 64  # 32 to 128 cost the same up to n = 100; wide rows are kinder to memory at n = 1000
 
 
+def in_lanes(m: Any, l: Any, H: Any, Ic: Any, J: Any) -> Any:
+    """Columns of rods, shape (chains, n) each, as (blocks, n, 5, LANES), the tip first; the last chain fills up."""
+    rods = np.stack((m, l, H, Ic, J))[:, :, ::-1]
+    five, chains, n = rods.shape
+    filled = np.pad(rods, ((0, 0), (0, -chains % LANES), (0, 0)), mode="edge")
+    return np.ascontiguousarray(filled.reshape(five, -1, LANES, n).transpose(1, 3, 0, 2))
+
+
+@inlined
+def larger(a: Any, b: Any) -> Any:
+    """The larger number, b where a is none; adding 0 keeps stores unconditional, masked ones take AMD's cores long."""
+    return (a if a > b else b) + 0.0
+
+
 @allocating
 def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, doubtful: Any,
-                     out: Any) -> bool:
-    """Write ``theta''`` of all chains to ``out``, float64 only; whether all are finite and all angles small enough.
+                     out: Any) -> tuple[bool, bool]:
+    """Write ``theta''`` of all chains to ``out``, float64 only.
 
-    Shapes: rods (n, 8), or (n, 8, LANES) for LANES chains; theta, omega, out (n, chains); tau the same or None; work
-    (n, 8 * LANES); doubtful (chains,) or None, written: whether the answer is in doubt.  All chains are on one support,
-    with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
+    Returns whether all are finite and all angles small enough, and whether an answer is in doubt.
+
+    Shapes: rods (n, 8), or as of :func:`in_lanes`; theta, omega, out (n, chains); tau the same or None; work
+    (n, 6 * LANES), or (n, 8 * LANES) with doubtful, which is (chains,) or None, written: which answers are in
+    doubt.  All chains are on one support, with acceleration ``(ax, ay)``.  Small enough is
+    :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
-    held = np.empty(10 * LANES)
-    wrong = 0
+    held = np.zeros(16 * LANES)
+    largest = nought = 0.0
+    again = 0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
-        held[:] = 0.0
+        held[:(8 if doubtful is None else 10) * LANES] = 0.0
+        row = theta[n - 1, first:first + width]
+        for j in range(width):
+            held[12 * LANES + j] = row[j]
         for i in range(n):
             k = n - 1 - i
             o = work[k]
-            here = theta[k, first:first + width]
             if k > 0:
-                before = theta[k - 1, first:first + width]
+                row = theta[k - 1, first:first + width]
                 for j in range(width):
-                    d, e = difference(here[j], before[j])
-                    o[3 * LANES + j], o[4 * LANES + j] = sines(d, e)
+                    held[13 * LANES + j] = row[j]
             else:
-                for j in range(width):
-                    o[3 * LANES + j], o[4 * LANES + j] = sines(here[j], 0.0)
+                held[13 * LANES:14 * LANES] = 0.0
             for j in range(width):
-                wrong += abs(here[j]) > 0.5 * LARGEST
+                here, before = held[12 * LANES + j], held[13 * LANES + j]
+                d, e = difference(here, before)
+                o[3 * LANES + j], o[4 * LANES + j] = sines(d, e)
+                held[10 * LANES + j] = larger(abs(here), held[10 * LANES + j])
+                held[12 * LANES + j] = before
+            row = omega[k, first:first + width]
+            for j in range(width):
+                held[14 * LANES + j] = row[j]
+            if tau is not None:
+                row = tau[k, first:first + width]
+                for j in range(width):
+                    held[15 * LANES + j] = row[j]
             if rods.ndim == 2:
                 m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
                 J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
-            rate = omega[k, first:first + width]
+            else:
+                own = rods[first // LANES, n - 1 - k]
             for j in range(width):
-                if rods.ndim == 3:
-                    m, l, I, Ic = rods[k, 0, j], rods[k, 1, j], rods[k, 2, j], rods[k, 3, j]
-                    J, It, mH, mG = rods[k, 4, j], rods[k, 5, j], rods[k, 6, j], rods[k, 7, j]
+                if rods.ndim == 4:
+                    m, l, H, Ic, J = own[0, j], own[1, j], own[2, j], own[3, j], own[4, j]
+                    G = l - H
+                    mH, mG = m * H, m * G
+                    I, It = Ic + mH * H, Ic + mG * G
                 Puu, Pun, Pnn, Delta = held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j]
-                qn = held[5 * LANES + j]
+                qn, rate = held[5 * LANES + j], held[14 * LANES + j]
                 r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
                 f0, f1, f2, f3 = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, held[4 * LANES + j], qn,
-                                       held[6 * LANES + j], held[7 * LANES + j], rate[j] * rate[j])
+                                       held[6 * LANES + j], held[7 * LANES + j], rate * rate)
                 o[j] = J * r
                 o[LANES + j] = l * l * Pun * r
                 o[5 * LANES + j] = (mH + l * Pnn) * r
                 if tau is None:
                     o[2 * LANES + j] = l * l * qn * r
                 else:
-                    t = tau[k, first + j]
+                    t = held[15 * LANES + j]
                     o[2 * LANES + j] = (l * qn - t) * l * r
                     g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
                     f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
@@ -90,7 +126,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 s, c = o[3 * LANES + j], o[4 * LANES + j]
                 if doubtful is not None:
                     held[9 * LANES + j], held[8 * LANES + j] = spread_within(s, c, a, x, y, f0,
-                                                                             rate[j] * rate[j] * (mH + l * Er))
+                                                                             rate * rate * (mH + l * Er))
                     if tau is not None:
                         w, g, h = t * l * r, t * g0, t * g1
                         o[6 * LANES + j] += w * w
@@ -102,41 +138,49 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 held[6 * LANES + j], held[7 * LANES + j] = f2, f3
         for j in range(width):
             held[j], held[LANES + j] = ay, ax
-        held[2 * LANES:7 * LANES] = 0.0  # the covariance, the largest theta''**2 and the largest variance
+        if doubtful is not None:
+            held[2 * LANES:7 * LANES] = 0.0  # the covariance, the largest theta''**2, the largest variance
         for k in range(n):
             o = work[k]
+            row = omega[k, first:first + width]
+            for j in range(width):
+                held[14 * LANES + j] = row[j]
             if rods.ndim == 2:
                 l = rods[k, 1]
                 per_length = 1.0 / l
-            rate, result = omega[k, first:first + width], out[k, first:first + width]
+            else:
+                own = rods[first // LANES, n - 1 - k]
             for j in range(width):
-                if rods.ndim == 3:
-                    l = rods[k, 1, j]
+                if rods.ndim == 4:
+                    l = own[1, j]
                     per_length = 1.0 / l
                 s, c, tu, tn = o[3 * LANES + j], o[4 * LANES + j], held[j], held[LANES + j]
                 au, an = tu * c + tn * s, tn * c - tu * s
-                lz = l * (rate[j] * rate[j])
+                lz = l * (held[14 * LANES + j] * held[14 * LANES + j])
                 if doubtful is not None:
                     uu, un, nn, v = spread(s, c, tu, tn, au - lz, lz, o[j], o[LANES + j], o[7 * LANES + j],
                                            o[6 * LANES + j], held[2 * LANES + j], held[3 * LANES + j],
                                            held[4 * LANES + j])
-                    v = v * (per_length * per_length)
                     held[2 * LANES + j], held[3 * LANES + j], held[4 * LANES + j] = uu, un, nn
-                    held[6 * LANES + j] = v if v > held[6 * LANES + j] else held[6 * LANES + j]
+                    held[6 * LANES + j] = larger(v * (per_length * per_length), held[6 * LANES + j])
                 tu = au - lz
                 tn = o[j] * an - (o[2 * LANES + j] + o[LANES + j] * tu)
-                result[j] = -(o[5 * LANES + j] * an + (o[2 * LANES + j] + o[LANES + j] * tu) * per_length)
-                held[j], held[LANES + j] = tu, tn
+                x = -(o[5 * LANES + j] * an + (o[2 * LANES + j] + o[LANES + j] * tu) * per_length)
+                held[j], held[LANES + j], held[13 * LANES + j] = tu, tn, x
+                held[11 * LANES + j] += 0.0 * x
                 if doubtful is not None:
-                    v = result[j] * result[j]
-                    held[5 * LANES + j] = v if v > held[5 * LANES + j] else held[5 * LANES + j]
+                    held[5 * LANES + j] = larger(x * x, held[5 * LANES + j])
+            row = out[k, first:first + width]
             for j in range(width):
-                wrong += 0.0 * result[j] != 0.0
+                row[j] = held[13 * LANES + j]
         if doubtful is not None:
             for j in range(width):
                 lost = 0.0 * (held[2 * LANES + j] + held[4 * LANES + j]) != 0.0
-                doubtful[first + j] = lost or held[6 * LANES + j] > DOUBT * DOUBT * held[5 * LANES + j]
-    return wrong == 0
+                doubtful[first + j] = lost | (held[6 * LANES + j] > DOUBT * DOUBT * held[5 * LANES + j])
+                again += doubtful[first + j]
+    for j in range(LANES):
+        largest, nought = max(largest, held[10 * LANES + j]), nought + held[11 * LANES + j]
+    return nought == 0.0 and largest <= 0.5 * LARGEST, again > 0
 
 
 def accelerate_rows(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, out: Any) -> tuple[bool, Any]:

@@ -31,6 +31,8 @@ def float_time(t: Any) -> float:
 
 def floats(values: Any, name: str) -> Any:
     """Real numbers of any kind, in nested lists or an array, as contiguous float64 of the same shape."""
+    if type(values) is np.ndarray and values.dtype is FLOAT64 and values.flags.c_contiguous:
+        return values
     refuse_text(values, name)
     refuse_mask(values, name)
     try:
@@ -47,7 +49,8 @@ def float_state(values: Any, name: str, n: int) -> Any:
 
     Raises SceneError for another shape; TextError, NotAQuantityError, QuantityError for what are no real numbers.
     """
-    if type(values) is np.ndarray and values.dtype is FLOAT64 and values.shape == (n,) and values.flags.c_contiguous:
+    if (type(values) is np.ndarray and values.dtype is FLOAT64 and values.flags.c_contiguous
+            and (values.shape == (n,) or values.ndim == 2 and len(values) == n)):
         return values
     array = floats(values, name)
     _check_shape(array, name, n)
