@@ -35,7 +35,7 @@ from .constants import (
     to_floats,
 )
 from .errors import NotAQuantityError, QuantityError, SceneError
-from .lanes import LANES, accelerate_lanes, accelerate_rows
+from .lanes import accelerate_rows, accelerate_together
 from .machine import has_numba, machine
 from .quantities import quantity, real_number, to_float
 from .recursion import accelerate_bobs, accelerate_rods
@@ -304,13 +304,11 @@ class CompiledChain:
         return self._kept.space
 
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
-        tau, n = self.torques(theta, omega), len(self)
+        tau = self.torques(theta, omega) if self.has_torques else None
         if has_numba() and theta.ndim == 2:
-            doubtful = None if self._even else np.empty(theta.shape[1], bool)
-            work = np.empty((n, (6 if self._even else 8) * LANES))
-            done, again = machine(accelerate_lanes)(self.rods, theta, omega, tau, ax, ay, work, doubtful, out)
-            if done:
-                return True, doubtful if again else False
+            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, not self._even, out)
+            if found[0]:
+                return found
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)
 
     def torques(self, theta: Any, omega: Any) -> Any:

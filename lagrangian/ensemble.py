@@ -18,7 +18,7 @@ from .arithmetic import arithmetic_of
 from .chain import CompiledChain
 from .constants import NAMES, check_damping, check_joints, checked, even, float_row
 from .errors import QuantityError, SceneError
-from .lanes import LANES, accelerate_lanes, accelerate_rows, in_lanes
+from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
 from .redone import in_pairs, rows_in_pairs
 from .shaking import shaking_of
@@ -154,12 +154,10 @@ class Ensemble:
         """Write ``theta''`` in float64 alone; whether all are finite, and which chains are in doubt."""
         tau = self._torques(theta, omega)
         if has_numba():
-            doubtful = None if self._even else np.empty(len(self), bool)
-            work = np.empty((self.shape[1], (6 if self._even else 8) * LANES))
-            done, again = machine(accelerate_lanes)(self._lanes, theta.T, omega.T, None if tau is None else tau.T,
-                                                    ax, ay, work, doubtful, out.T)
-            if done:
-                return True, doubtful if again else False
+            found = accelerate_together(self._lanes, theta.T, omega.T, None if tau is None else tau.T, ax, ay,
+                                        not self._even, out.T)
+            if found[0]:
+                return found
         rods = np.stack([row.T for row in float_row(*self._columns)], axis=1)
         return accelerate_rows(rods, theta.T, omega.T, None if tau is None else tau.T, ax, ay, out.T)
 

@@ -1,7 +1,7 @@
 """Plain Python functions as machine code, where numba is installed.
 
-Only this file knows of numba, :mod:`lagrangian.translator`, which says what it may leave out, and
-:mod:`lagrangian.pairtype`, which adds a number type to it.
+Only this file knows of numba, :mod:`lagrangian.translator`, which says what it may leave out,
+:mod:`lagrangian.pairtype`, which adds a number type to it, and :mod:`lagrangian.prefetch`, an instruction.
 
 The recursions of this package are written once, as plain functions of numbers and arrays.  Run as they are
 they take Python floats, NumPy arrays, mpmath numbers and python-flint balls; :func:`machine` translates the
@@ -24,7 +24,8 @@ from importlib.util import find_spec
 from types import CodeType, FunctionType
 from typing import Any, TypeVar
 
-__all__ = ["allocating", "as_written", "has_numba", "inlined", "machine", "rebound", "reordered", "stands_in"]
+__all__ = ["allocating", "as_written", "has_numba", "inlined", "machine", "prefetched", "rebound",
+           "reordered", "stands_in"]
 
 AnyFunction = TypeVar("AnyFunction", bound=Callable[..., Any])
 PACKAGE = __name__.rpartition(".")[0]
@@ -58,6 +59,10 @@ def stands_in(function: Callable[..., Any]) -> Callable[[AnyFunction], AnyFuncti
         _STAND_INS[function] = other
         return other
     return mark
+
+
+def prefetched(rows: Any, k: int, j: int) -> None:
+    """Ask memory for ``rows[k, j]``, which is needed soon; nothing at all where it is not translated."""
 
 
 @contextmanager
@@ -105,7 +110,7 @@ def as_written(function: Any, operators: tuple[Any, ...] = ()) -> Callable[..., 
 def _translated(function: FunctionType, written: bool = False, operators: tuple[Any, ...] = (),
                 called: bool = False) -> Callable[..., Any]:
     """``called``: from machine code alone, so that nothing is made for calls from Python, and nothing kept on disk."""
-    names = {name: _translated(callee, written, called=True) for name, callee in _callees(function, written)}
+    names = {name: _part(callee, written) for name, callee in _callees(function, written)}
     copy = rebound(function, **names)
     digest = _shortened(_digest(part, written) for part in (function, *operators))
     copy.__module__, copy.__qualname__ = function.__module__, f"{function.__name__}_{digest}"
@@ -120,6 +125,13 @@ def _translated(function: FunctionType, written: bool = False, operators: tuple[
     found = import_module("numba").njit(pipeline_class=translator.Passes, **options)(copy)
     found.compile = undisturbed()(translator.remembering()(found.compile))
     return found  # type: ignore[no-any-return]
+
+
+def _part(callee: FunctionType, written: bool) -> Any:
+    """What stands for a function in the code of those that call it."""
+    if callee is prefetched:
+        return import_module(f"{PACKAGE}.prefetch").prefetch
+    return _translated(callee, written, called=True)
 
 
 def _callees(function: FunctionType, written: bool) -> Iterator[tuple[str, FunctionType]]:

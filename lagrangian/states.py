@@ -49,9 +49,6 @@ def float_state(values: Any, name: str, n: int) -> Any:
 
     Raises SceneError for another shape; TextError, NotAQuantityError, QuantityError for what are no real numbers.
     """
-    if (type(values) is np.ndarray and values.dtype is FLOAT64 and values.flags.c_contiguous
-            and (values.shape == (n,) or values.ndim == 2 and len(values) == n)):
-        return values
     array = floats(values, name)
     _check_shape(array, name, n)
     return array
@@ -59,8 +56,11 @@ def float_state(values: Any, name: str, n: int) -> Any:
 
 def float_states(theta: Any, omega: Any, n: int) -> tuple[Any, Any]:
     """Angles and rates as :func:`float_state` gives them, of the same shape."""
-    theta, omega = float_state(theta, "theta", n), float_state(omega, "omega", n)
-    _check_same(theta, omega)
+    if not (type(theta) is np.ndarray is type(omega) and theta.dtype is FLOAT64 is omega.dtype
+            and (theta.shape == (n,) or theta.ndim == 2 and len(theta) == n) and theta.shape == omega.shape
+            and theta.flags.c_contiguous and omega.flags.c_contiguous):
+        theta, omega = float_state(theta, "theta", n), float_state(omega, "omega", n)
+        _check_same(theta, omega)
     return theta, omega
 
 
