@@ -318,21 +318,12 @@ def _nowhere(angle: int) -> int:
 
 def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
     """The sum of entries of increments as a series in ``t = s / unit``."""
-    modes: Modes = {}
-    plain = p.coordinates.unit == (ONE, 1)
-    waves = _Waves(p)
-    for monomial, rows in _total(p, entries).items():
-        for key, row in rows.items():
-            kind, turned, angle = waves[key]
-            if turned:
-                row = reflected(kind, row)
-            if plain:
-                modes[kind, angle, monomial] = row
-            else:
-                _add_by_power(modes, kind, angle, monomial, row, p.coordinates.unit)
-    for mode in [mode for mode, f in modes.items() if not f]:
-        del modes[mode]
-    return modes
+    total = _total(p, entries)
+    waves = {key: (key & 1, *p.angle(key >> 1)) for key in set().union(*total.values())}
+    modes = {(kind, angle, monomial): reflected(kind, row) if turned else row
+             for monomial, rows in total.items() for key, row in rows.items() if row
+             for kind, turned, angle in (waves[key],)}
+    return modes if p.coordinates.unit == (ONE, 1) else _in_time(modes, *p.coordinates.unit)
 
 
 def _total(p: Problem, entries: Iterable[Entry]) -> dict[Monomial, Rows]:
@@ -350,23 +341,18 @@ def _total(p: Problem, entries: Iterable[Entry]) -> dict[Monomial, Rows]:
     return total
 
 
-class _Waves(dict[int, Any]):
-    """For places of rows ``(kind, was the angle reflected, angle)``."""
-
-    def __init__(self, p: Problem) -> None:
-        self.problem = p
-
-    def __missing__(self, key: int) -> tuple[int, bool, Any]:
-        found = self[key] = key & 1, *self.problem.angle(key >> 1)
-        return found
-
-
-def _add_by_power(modes: Modes, kind: int, angle: Any, monomial: Monomial, row: Any, unit: Any) -> None:
-    if unit[1] != 1:
-        row = row(fmpq_poly([0, unit[1]]))
-    for m, f in ((monomial, row),) if unit[0] == ONE else _by_power(row, monomial, unit[0]):
-        old = modes.get((kind, angle, m))
-        modes[kind, angle, m] = f if old is None else old + f
+def _in_time(modes: Modes, unit: Monomial, number: Any) -> Modes:
+    """A series in ``s`` as one in ``t``, where ``s = number unit t``."""
+    result: Modes = {}
+    for (kind, angle, monomial), row in modes.items():
+        if number != 1:
+            row = row(fmpq_poly([0, number]))
+        for m, f in ((monomial, row),) if unit == ONE else _by_power(row, monomial, unit):
+            old = result.get((kind, angle, m))
+            result[kind, angle, m] = f if old is None else old + f
+    for mode in [mode for mode, f in result.items() if not f]:
+        del result[mode]
+    return result
 
 
 def _by_power(row: Any, monomial: Monomial, unit: Monomial) -> Iterator[tuple[Monomial, Any]]:
