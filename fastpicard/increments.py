@@ -144,25 +144,24 @@ def _next_column(column: Column, steps: list[_Step], last: bool) -> Column:
 def _product(row: Row, column: Column | Mapping[int, Entry]) -> Entry:
     result: Entry = {}
     for j, terms in row:
-        for monomial, rows in column[j].items():
-            for kind, k, own, c in terms:
+        for kind, k, own, c in terms:
+            entry = column[j] if c == 1 else _multiple(column[j], c)
+            for monomial, rows in entry.items():
                 target = result.setdefault(monomial + own, {})
-                scaled = rows if c == 1 else _multiple(rows, c)
                 if kind != COS:
-                    _multiply_sine(target, scaled, k)
+                    _multiply_sine(target, rows, k)
                 elif k:
-                    _multiply_cosine(target, scaled, k)
+                    _multiply_cosine(target, rows, k)
                 elif target:
-                    _add_rows(target, scaled)
+                    _add_rows(target, rows)
                 else:
-                    target.update(scaled)
+                    target.update(rows)
     return result
 
 
-def _multiple(rows: Rows, c: Any) -> Rows:
-    if c == 2:
-        return {key: row + row for key, row in rows.items()}
-    return {key: row * c for key, row in rows.items()}
+def _multiple(entry: Entry, c: Any) -> Entry:
+    inverse = fmpq(1) / c  # python-flint divides a polynomial by a number faster than it multiplies by one
+    return {monomial: {key: row / inverse for key, row in rows.items()} for monomial, rows in entry.items()}
 
 
 def _add_rows(target: Rows, rows: Rows) -> None:
