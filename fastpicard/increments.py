@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from math import gcd, lcm
 from typing import Any
 
-from flint import fmpq, fmpq_poly, fmpz
+from flint import fmpq, fmpq_poly
 
 from fastpicard.coordinates import Problem, Row, Term
 from fastpicard.modes import COS, SIN, Modes, mask
@@ -214,22 +214,28 @@ def reflected(kind: int, row: Any) -> Any:
 
 
 class Divisors(dict[int, Any]):
-    """For places of rows ``(divisor, place of the integral, q, the angle at time 0)``.
+    """For places of rows ``(divisor, place of the integral, q, 1 - q x, value, slope)``.
 
     The divisors are ``q x - 1`` of cosines, ``1 - q x`` of sines, for two integrals the product of both; where the
-    integrand has the number ``common`` as a factor, over it.
+    integrand has the number ``common`` as a factor, over it.  ``value`` and ``slope`` are the places, where the
+    frequency is gone, of the constant and of the multiple of ``t`` that let the integral and its derivative vanish at
+    0, or None where they do anyhow.
     """
 
     def __init__(self, p: Problem, times: int, common: Any = 1) -> None:
         self.coordinates, self.times, self.common = p.coordinates, times, common
 
-    def __missing__(self, key: int) -> tuple[Any, int, int, int]:
+    def __missing__(self, key: int) -> tuple[Any, int, int, Any, int | None, int | None]:
         angle = key >> 1
         q = self.coordinates.frequency(angle)
         cosine, sine = fmpq_poly([-1, q]), fmpq_poly([1, -q])
         divisor = cosine * sine if self.times == 2 else sine if key & 1 else cosine
         target = key if self.times == 2 else key ^ 1
-        found = self[key] = divisor / self.common, target, q, self.coordinates.without_frequency(angle)
+        start, kind = self.coordinates.without_frequency(angle), target & 1
+        place = 2 * start + kind
+        value = place if start or kind == COS else None
+        slope = place if self.times == 2 and (start or kind == SIN) else None
+        found = self[key] = divisor / self.common, target, q, sine, value, slope
         return found
 
 
@@ -241,40 +247,36 @@ def _integral(product: Entry, divisors: Divisors) -> Entry:
 
 def _integrated(rows: Rows, divisors: Divisors) -> Rows:
     result: Rows = {}
-    starts: dict[tuple[int, int, int], list[tuple[Any, Any]]] = {}
+    values: dict[int, list[Any]] = {}
+    slopes: dict[int, list[Any]] = {}
     times = divisors.times
     for key, row in rows.items():
         if key < 2:
             row = mask(key, row)
         if not row:
             continue
-        divisor, target, q, start = divisors[key]
+        divisor, target, q, factor, value, slope = divisors[key]
         row = row.left_shift(times) // divisor
         if not q:
             _add_rows(result, {target: row})
             continue
         result[target] = row
-        kind, number, denominator = target & 1, row.numer(), row.denom()
-        if start or kind == COS:
-            starts.setdefault((kind, start, 0), []).append((-number[0], denominator))
-        if times == 2 and (start or kind == SIN):
-            starts.setdefault((kind, start, 1), []).append((q * number[0] - number[1], denominator))
-    for (kind, start, r), fractions in starts.items():
-        row = fmpq_poly([0] * r + [_sum(fractions)])
-        place = 2 * start + kind
-        if start < 0:
-            place, row = _reflection(place, row)
-        _add_rows(result, {place: row})
+        if value is not None:
+            values.setdefault(value, []).append(row[0])
+        if slope is not None:
+            slopes.setdefault(slope, []).append(row.mul_low(factor, 2)[1])
+    for starts, r in ((values, 0), (slopes, 1)):
+        for place, numbers in starts.items():
+            row = fmpq_poly([0] * r + [-_sum(numbers)])
+            if place < 0:
+                place, row = _reflection(place, row)
+            _add_rows(result, {place: row})
     return result
 
 
-def _sum(fractions: list[tuple[Any, Any]]) -> Any:
-    """The sum of fractions whose denominators are nearly the same."""
-    common = fmpz(1)
-    for _, denominator in fractions:
-        if common % denominator:
-            common = common.lcm(denominator)
-    return fmpq(sum(numerator * (common // denominator) for numerator, denominator in fractions), common)
+def _sum(numbers: list[Any]) -> Any:
+    """The sum of rational numbers, over one denominator inside python-flint."""
+    return fmpq_poly(numbers)(1)
 
 
 def _derivative(rows: Rows, divisors: Divisors) -> Rows:
