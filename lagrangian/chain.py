@@ -84,7 +84,7 @@ class CompiledChain:
 
     Speed and accuracy
     ------------------
-    With numba: 25 to 40 ns a link for one long chain, 8 to 15 ns a link and chain for a thousand chains, the more
+    With numba: 25 to 40 ns a link for one long chain, 7 to 12 ns a link and chain for a thousand chains, the more
     where rods are uneven; an answer in doubt costs 12 to 50 times more, and the first one seconds of translation.
     Without numba the same source runs as Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a
     third slower; such an angle loses nothing as the float that it is, but that float itself knows the angle to 1e-10.
