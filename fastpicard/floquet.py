@@ -225,7 +225,7 @@ class FloquetMatrix:
         Raises
         ------
         BadInputError
-            if ``tol`` is not positive.
+            if ``tol`` is not positive; where ``sup |P|`` times the period is beyond 1000, so that the order would be.
 
         Examples
         --------

@@ -36,16 +36,20 @@ from fastpicard.series import PoissonSeries
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import dyadic, write
 
+LARGEST_ORDER = 100_000
 # Of an elementary function of one of these SymPy knows no antiderivative, and searches many minutes to find that out.
 SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, sympy.Ci, sympy.Ei, sympy.li)
 
 
 def check_order(n: Any) -> int:
-    """The order of an iterate, an integer from 0 up."""
+    """The order of an iterate, an integer from 0 to LARGEST_ORDER."""
     if isinstance(n, bool) or not isinstance(n, numbers.Integral):
         raise BadTypeError(f"the order n must be an integer, but it is {n!r}, a {type(n).__name__}.  Use n=20, say.")
     if n < 0:
         raise BadInputError(f"the order n must be an integer from 0 up, but it is {n}.  n counts the integrations.")
+    if n > LARGEST_ORDER:
+        raise BadInputError(f"an iterate is made of all orders before it, and the order n is {n}.  Use at most "
+                            f"{LARGEST_ORDER}; iterates rarely gain anything beyond 100.")
     return int(n)
 
 

@@ -29,11 +29,13 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_poly
 
+from fastpicard.errors import BadInputError
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 
 BITS = 64  # for bounds, whose own digits matter little
 MOST_INCREMENTS, LEVELS = 300, 6  # how far to go for a sharp bound
+LARGEST_PEAK = 1000  # where increments grow up to an order beyond it, no iterate that is worth having comes to an end
 
 
 def a_priori(P: Harmonics, period: Any, n: int) -> Any:
@@ -94,7 +96,15 @@ def _peak(P: Harmonics, period: Any) -> float:
 
 
 def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
-    """The smallest ``n`` from which on the bound meets ``tol``: largest row sum."""
+    """The smallest ``n`` from which on the bound meets ``tol``: largest row sum.
+
+    Raises BadInputError where increments grow up to an order beyond ``LARGEST_PEAK``.
+    """
+    peak = _peak(P, period)
+    if not peak <= LARGEST_PEAK:
+        raise BadInputError(f"increments grow up to the order Pbar T, which is about {peak:.3g} here, and an iterate is "
+                            f"of no use before.  Use enclosure(values), which needs none, a shorter period, or smaller "
+                            f"parameters.")
     last = a_priori_order(P, period, tol / 100)
     rest = a_priori(P, period, last)
     for level in range(0, LEVELS, 2):

@@ -613,6 +613,15 @@ def test_an_order_is_an_integer_from_0_up(n):
             ask()
 
 
+def test_orders_that_no_machine_reaches_are_refused():
+    """Not begun and never ended."""
+    for ask in (lambda: FundamentalMatrix(MATHIEU, t, 10**30), lambda: FloquetMatrix(MATHIEU, t, 1).to_order(10**6)):
+        with pytest.raises(FastPicardError, match="made of all orders before it"):
+            ask()
+    with pytest.raises(FastPicardError, match="Pbar T, which is about 6.28e[+]20"):
+        FloquetMatrix.for_accuracy(Matrix([[0, 1], [-a, 0]]), t, {a: 10**40}, 1e-10)
+
+
 @pytest.mark.parametrize("n", [2, np.int64(2), sympy.Integer(2)], ids=shown)
 def test_an_order_may_be_any_integer_type(n):
     """int, NumPy's and SymPy's integers mean the same order."""
