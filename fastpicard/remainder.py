@@ -102,9 +102,9 @@ def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
     """
     peak = _peak(P, period)
     if not peak <= LARGEST_PEAK:
-        raise BadInputError(f"increments grow up to the order Pbar T, which is about {peak:.3g} here, and an iterate is "
-                            f"of no use before.  Use enclosure(values), which needs none, a shorter period, or smaller "
-                            f"parameters.")
+        raise BadInputError(f"increments grow up to the order Pbar T, which is about {peak:.3g} here, and an iterate "
+                            f"is of no use before.  Use enclosure(values), which needs none, a shorter period, or "
+                            f"smaller parameters.")
     last = a_priori_order(P, period, tol / 100)
     rest = a_priori(P, period, last)
     for level in range(0, LEVELS, 2):

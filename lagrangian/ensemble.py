@@ -54,9 +54,9 @@ class Ensemble:
     Speed and accuracy
     ------------------
     Accelerations are as good as those of a :class:`lagrangian.CompiledChain`, within 4e-15 of the largest, and those
-    in doubt are found again.  Chains of two to a hundred rods, a thousand at once: 9 to 11 ns a link and chain where all
-    are even with free joints, 12 to 14 where not, a quarter more than common rods cost (``benchmarks/chains.py many``).
-    Without numba NumPy's rows do it, tens of times slower.
+    in doubt are found again.  A thousand chains of two to a hundred rods take 9 to 11 ns a link and chain where all are
+    even with free joints, 12 to 14 where not, a quarter more than common rods (``benchmarks/chains.py many``).  Without
+    numba NumPy's rows do it, tens of times slower.
 
     >>> ensemble = Ensemble([[1, 1], [1, 2], [1, 3]], [1, 1], [1, 1], [1, 1], gravity=10)
     >>> len(ensemble), ensemble.acceleration(0, [[0.5, 0.0]] * 3, [[0.0, 1.0]] * 3).round(3)[:, 0]
