@@ -47,7 +47,7 @@ def check_order(n: Any) -> int:
         raise BadTypeError(f"the order n must be an integer, but it is {n!r}, a {type(n).__name__}.  Use n=20, say.")
     if n < 0:
         raise BadInputError(f"the order n must be an integer from 0 up, but it is {n}.  n counts the integrations.")
-    if n > LARGEST_ORDER:
+    if int(n) > LARGEST_ORDER:
         raise BadInputError(f"an iterate is made of all orders before it, and the order n is {n}.  Use at most "
                             f"{LARGEST_ORDER}; iterates rarely gain anything beyond 100.")
     return int(n)

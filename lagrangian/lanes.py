@@ -36,6 +36,17 @@ LANES = 64  # 32 to 128 cost the same
 AHEAD = 4  # links
 LINE = 8  # numbers in a line of memory
 
+# Rows of what is carried from link to link: inertia and forces of all beyond, two variances; the largest angle, 0
+# theta'', 1 where an answer is in doubt; the angles of this rod and the one before, its torque.
+PUU, PUN, PNN, DELTA, QU, QN, KU, KN, VAR_QN, VAR_PUN, ANGLE, NOUGHT, ASKED, HERE, BEFORE, TAU = (
+    range(0, 16 * LANES, LANES))
+# On the way back: the acceleration and its covariance, the largest theta''**2 and variance, theta''.
+TU, TN, C_UU, C_UN, C_NN, SIZE, SPREAD, FOUND = range(0, 8 * LANES, LANES)
+# What is kept of every link: w0, w1/l, w2/l, sine and cosine, (m H + l Pnn)/D, theta', variances of w2 and w1.
+W0, W1, W2, SIN, COS, W3, RATE, VAR_W2, VAR_W1 = range(0, 9 * LANES, LANES)
+# Rods of their own.
+MASS, LENGTH, CENTER, SPIN, COUPLING = range(0, 5 * LANES, LANES)
+
 
 def in_lanes(m: Any, l: Any, H: Any, Ic: Any, J: Any) -> Any:
     """Columns of rods, shape (chains, n) each, as (blocks, n, 5 * LANES), the tip first; the last chain fills up."""
@@ -67,20 +78,20 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
     Returns whether all are finite and all angles small enough, and whether an answer is in doubt.
 
     Shapes: rods (n, 8), or as of :func:`in_lanes`; theta, omega, out (n, chains); tau the same or None; work
-    (n, 7 * LANES), or (n, 9 * LANES) with excess, which is (chains,) or None, written: how far the largest variance is
-    beyond what is in no doubt, positive or no number where the answer is in doubt.  All chains are on one support, with
-    acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
+    (n, VAR_W2), or with all its rows where excess is (chains,), not None.  That is written: how far the largest
+    variance is beyond what is in no doubt, positive or no number where the answer is in doubt.  All chains are on one
+    support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
     step = LINE if rods.ndim == 2 else 1
-    held = np.zeros(16 * LANES)
+    held = np.zeros(TAU + LANES)
     largest = nought = again = 0.0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
-        held[:(8 if excess is None else 10) * LANES] = 0.0
+        held[PUU:(VAR_QN if excess is None else ANGLE)] = 0.0
         row = theta[n - 1, first:first + width]
         for j in range(width):
-            held[12 * LANES + j] = row[j]
+            held[HERE + j] = row[j]
         for i in range(n):
             k = n - 1 - i
             o = work[k]
@@ -91,22 +102,22 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
             if k > 0:
                 row = theta[k - 1, first:first + width]
                 for j in range(width):
-                    held[13 * LANES + j] = row[j]
+                    held[BEFORE + j] = row[j]
             else:
-                held[13 * LANES:14 * LANES] = 0.0
+                held[BEFORE:BEFORE + LANES] = 0.0
             for j in range(width):
-                here, before = held[12 * LANES + j], held[13 * LANES + j]
+                here, before = held[HERE + j], held[BEFORE + j]
                 d, e = difference(here, before)
-                o[3 * LANES + j], o[4 * LANES + j] = sines(d, e)
-                held[10 * LANES + j] = larger(abs(here), held[10 * LANES + j])
-                held[12 * LANES + j] = before
+                o[SIN + j], o[COS + j] = sines(d, e)
+                held[ANGLE + j] = larger(abs(here), held[ANGLE + j])
+                held[HERE + j] = before
             row = omega[k, first:first + width]
             for j in range(width):
-                o[6 * LANES + j] = row[j]
+                o[RATE + j] = row[j]
             if tau is not None:
                 row = tau[k, first:first + width]
                 for j in range(width):
-                    held[14 * LANES + j] = row[j]
+                    held[TAU + j] = row[j]
             if rods.ndim == 2:
                 m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
                 J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
@@ -114,47 +125,47 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 own = rods[first // LANES, n - 1 - k]
             for j in range(width):
                 if rods.ndim == 3:
-                    m, l, H, Ic, J = own[j], own[LANES + j], own[2 * LANES + j], own[3 * LANES + j], own[4 * LANES + j]
+                    m, l, H, Ic, J = own[MASS + j], own[LENGTH + j], own[CENTER + j], own[SPIN + j], own[COUPLING + j]
                     G = l - H
                     mH, mG = m * H, m * G
                     I, It = Ic + mH * H, Ic + mG * G
-                Puu, Pun, Pnn, Delta = held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j]
-                qn, rate = held[5 * LANES + j], o[6 * LANES + j]
+                Puu, Pun, Pnn, Delta = held[PUU + j], held[PUN + j], held[PNN + j], held[DELTA + j]
+                qn, rate = held[QN + j], o[RATE + j]
                 r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
-                f0, f1, f2, f3 = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, held[4 * LANES + j], qn,
-                                       held[6 * LANES + j], held[7 * LANES + j], rate * rate)
-                o[j] = J * r
+                f0, f1, f2, f3 = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, held[QU + j], qn,
+                                       held[KU + j], held[KN + j], rate * rate)
+                o[W0 + j] = J * r
                 lr = l * r
-                o[LANES + j] = lr * Pun
-                o[5 * LANES + j] = (mH + l * Pnn) * r
+                o[W1 + j] = lr * Pun
+                o[W3 + j] = (mH + l * Pnn) * r
                 if tau is None:
-                    o[2 * LANES + j] = lr * qn
+                    o[W2 + j] = lr * qn
                 else:
-                    t = held[14 * LANES + j]
-                    o[2 * LANES + j] = (l * qn - t) * r
+                    t = held[TAU + j]
+                    o[W2 + j] = (l * qn - t) * r
                     g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
                     f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
                 if excess is not None:
-                    llr, w = l * lr, l * o[2 * LANES + j]
-                    o[7 * LANES + j] = llr * llr * held[8 * LANES + j] + w * w
-                    o[8 * LANES + j] = llr * llr * held[9 * LANES + j]
-                s, c = o[3 * LANES + j], o[4 * LANES + j]
+                    llr, w = l * lr, l * o[W2 + j]
+                    o[VAR_W2 + j] = llr * llr * held[VAR_QN + j] + w * w
+                    o[VAR_W1 + j] = llr * llr * held[VAR_PUN + j]
+                s, c = o[SIN + j], o[COS + j]
                 if excess is not None:
-                    held[9 * LANES + j], held[8 * LANES + j] = spread_within(s, c, a, x, y, f0,
-                                                                             rate * rate * (mH + l * Er))
+                    b = rate * rate * (mH + l * Er)
+                    held[VAR_PUN + j], held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
                     if tau is not None:
                         w, g, h = t * lr, t * g0, t * g1
-                        o[7 * LANES + j] += w * w
-                        held[8 * LANES + j] += g * g * s * s + h * h * c * c
+                        o[VAR_W2 + j] += w * w
+                        held[VAR_QN + j] += g * g * s * s + h * h * c * c
                 Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
                 f0, f1, f2, f3 = turned_force(s, c, f0, f1, f2, f3)
-                held[j], held[LANES + j], held[2 * LANES + j], held[3 * LANES + j] = Puu, Pun, Pnn, det
-                held[4 * LANES + j], held[5 * LANES + j] = f0, f1
-                held[6 * LANES + j], held[7 * LANES + j] = f2, f3
+                held[PUU + j], held[PUN + j], held[PNN + j], held[DELTA + j] = Puu, Pun, Pnn, det
+                held[QU + j], held[QN + j] = f0, f1
+                held[KU + j], held[KN + j] = f2, f3
         for j in range(width):
-            held[j], held[LANES + j] = ay, ax
+            held[TU + j], held[TN + j] = ay, ax
         if excess is not None:
-            held[2 * LANES:7 * LANES] = 0.0  # the covariance, the largest theta''**2, the largest variance
+            held[C_UU:SPREAD + LANES] = 0.0
         for k in range(n):
             o = work[k]
             fetch(out, k + AHEAD, first, first + width, step)
@@ -165,38 +176,37 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 own = rods[first // LANES, n - 1 - k]
             for j in range(width):
                 if rods.ndim == 3:
-                    l = own[LANES + j]
-                s, c, tu, tn = o[3 * LANES + j], o[4 * LANES + j], held[j], held[LANES + j]
+                    l = own[LENGTH + j]
+                s, c, tu, tn = o[SIN + j], o[COS + j], held[TU + j], held[TN + j]
                 au, an = tu * c + tn * s, tn * c - tu * s
-                lz = l * (o[6 * LANES + j] * o[6 * LANES + j])
+                lz = l * (o[RATE + j] * o[RATE + j])
                 if excess is not None:
-                    uu, un, nn, v = spread(s, c, tu, tn, au - lz, lz, o[j], l * o[LANES + j], o[8 * LANES + j],
-                                           o[7 * LANES + j], held[2 * LANES + j], held[3 * LANES + j],
-                                           held[4 * LANES + j])
-                    held[2 * LANES + j], held[3 * LANES + j], held[4 * LANES + j] = uu, un, nn
+                    uu, un, nn, v = spread(s, c, tu, tn, au - lz, lz, o[W0 + j], l * o[W1 + j], o[VAR_W1 + j],
+                                           o[VAR_W2 + j], held[C_UU + j], held[C_UN + j], held[C_NN + j])
+                    held[C_UU + j], held[C_UN + j], held[C_NN + j] = uu, un, nn
                     if rods.ndim == 3:
                         per = 1.0 / l
-                    held[6 * LANES + j] = larger(v * (per * per), held[6 * LANES + j])
+                    held[SPREAD + j] = larger(v * (per * per), held[SPREAD + j])
                 tu = au - lz
-                q = o[2 * LANES + j] + o[LANES + j] * tu
-                tn, x = o[j] * an - l * q, -(o[5 * LANES + j] * an + q)
-                held[j], held[LANES + j], held[13 * LANES + j] = tu, tn, x
-                held[11 * LANES + j] += 0.0 * x
+                q = o[W2 + j] + o[W1 + j] * tu
+                tn, x = o[W0 + j] * an - l * q, -(o[W3 + j] * an + q)
+                held[TU + j], held[TN + j], held[FOUND + j] = tu, tn, x
+                held[NOUGHT + j] += 0.0 * x
                 if excess is not None:
-                    held[5 * LANES + j] = larger(x * x, held[5 * LANES + j])
+                    held[SIZE + j] = larger(x * x, held[SIZE + j])
             row = out[k, first:first + width]
             for j in range(width):
-                row[j] = held[13 * LANES + j]
+                row[j] = held[FOUND + j]
         if excess is not None:
             row = excess[first:first + width]
             for j in range(width):
-                lost = 0.0 * (held[2 * LANES + j] + held[4 * LANES + j])
-                x = lost + (held[6 * LANES + j] - DOUBT * DOUBT * held[5 * LANES + j])
+                lost = 0.0 * (held[C_UU + j] + held[C_NN + j])
+                x = lost + (held[SPREAD + j] - DOUBT * DOUBT * held[SIZE + j])
                 row[j] = x
-                held[15 * LANES + j] = (held[15 * LANES + j] if x <= 0.0 else 1.0) + 0.0
+                held[ASKED + j] = (held[ASKED + j] if x <= 0.0 else 1.0) + 0.0
     for j in range(LANES):
-        largest = max(largest, held[10 * LANES + j])
-        nought, again = nought + held[11 * LANES + j], again + held[15 * LANES + j]
+        largest = max(largest, held[ANGLE + j])
+        nought, again = nought + held[NOUGHT + j], again + held[ASKED + j]
     return nought == 0.0 and largest <= 0.5 * LARGEST, again > 0.0
 
 
@@ -205,7 +215,7 @@ def accelerate_together(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, 
     """:func:`accelerate_lanes`, ``asked`` for doubt or not; whether it could, and which are in doubt or False."""
     n, chains = theta.shape
     excess: Any = np.empty(chains) if asked else None
-    work = np.empty((n, (9 if asked else 7) * LANES))
+    work = np.empty((n, VAR_W1 + LANES if asked else VAR_W2))
     done, again = machine(accelerate_lanes)(rods, theta, omega, tau, ax, ay, work, excess, out)
     return done, again and ~(excess <= 0.0)
 
