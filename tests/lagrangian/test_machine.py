@@ -1,6 +1,7 @@
 """What numba is spared when it translates, and that it works as before for everybody else."""
 
 import gc
+import os
 import platform
 import re
 import subprocess
@@ -11,7 +12,6 @@ import pytest
 
 from lagrangian import CompiledChain
 from lagrangian.angles import revolved
-from lagrangian.lanes import accelerate_lanes
 from lagrangian.machine import machine, undisturbed
 
 event = pytest.importorskip("numba.core.event")
@@ -26,6 +26,15 @@ print(sorted({"scipy.linalg", "sympy.tensor.tensor"} & set(sys.modules)))
 import numba
 dot = numba.njit(lambda x: np.dot(x, x))
 print(dot(np.ones((2, 2))).tolist(), numba.njit(lambda x: np.linalg.det(x))(2 * np.eye(2)))
+"""
+
+MANY_CHAINS = """
+import numpy as np
+from lagrangian import CompiledChain
+from lagrangian.lanes import accelerate_lanes
+from lagrangian.machine import machine
+CompiledChain([1.0, 200.0], [1.0] * 2, [0.5] * 2, [0.6] * 2).acceleration(0, np.ones((2, 70)), np.ones((2, 70)))
+print(*machine(accelerate_lanes).inspect_asm().values())
 """
 
 
@@ -131,12 +140,10 @@ def test_parts_of_functions_have_no_machine_code_of_their_own(monkeypatch, tmp_p
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="the instructions are those of this family of processors")
-def test_many_chains_ask_for_memory_ahead_and_store_without_masks():
+def test_many_chains_ask_for_memory_ahead_and_store_without_masks(tmp_path):
     """Stores under a mask doubled the time of chains that are asked for their doubt, on processors of AMD."""
-    chain, states = CompiledChain([1.0, 200.0], [1.0] * 2, [0.5] * 2, [0.6] * 2), np.ones((2, 70))
-    chain.acceleration(0, states, states)
-
-    code = "".join(machine(accelerate_lanes).inspect_asm().values())
+    code = subprocess.run([sys.executable, "-c", MANY_CHAINS], capture_output=True, text=True, check=True,
+                          env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}).stdout
     assert "prefetch" in code
     assert not re.search(r"vmaskmov\w+\s+%\w+, %\w+, .*[(]", code)
 
