@@ -2,6 +2,7 @@
 
     python benchmarks/hard_chains.py [6000]
     python benchmarks/hard_chains.py motions [200]
+    python benchmarks/hard_chains.py bent
 
 The chains are those of ``tests/extremes/test_chains.py``, one to twelve rods with gravity.  Beside what
 ``acceleration`` gives stands the recursion in float64 alone, and how many answers it left in doubt, which are found
@@ -9,6 +10,8 @@ again (``lagrangian/redone.py``); for chains of ordinary rods too.  Beside the w
 answer moves if every number of the chain and its state goes to a next float.  Last, what finding again costs.
 
 Motions of such chains, one to six rods: how far angles are from 26 digits, over the error that they state.
+
+Long even chains in any state: the largest doubt of those that are bent, and not asked for it, and of the others.
 """
 
 from __future__ import annotations
@@ -23,12 +26,26 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from lagrangian import CompiledChain, QuantityError, simulate
-from tests.extremes.test_chains import KINDS, dense, error, hard_chain, hard_motion, moved, part_of_the_stated_error
+from lagrangian.angles import sines_of_large_joints
+from lagrangian.recursion import accelerate_rods
+from lagrangian.single import BENT
+from tests.extremes.test_chains import (
+    KINDS,
+    dense,
+    error,
+    hard_chain,
+    hard_motion,
+    moved,
+    nearly_straight,
+    part_of_the_stated_error,
+)
 
 
 def main() -> None:
     if sys.argv[1:2] == ["motions"]:
         return motions(int(sys.argv[2]) if len(sys.argv) > 2 else 200)
+    if sys.argv[1:2] == ["bent"]:
+        return long_chains()
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 6000
     report("hard", count, KINDS)
     report("ordinary", count, ["nothing"])
@@ -81,6 +98,24 @@ def motions(count: int) -> None:
           f"median {np.median([x[0] for x in found]):.2g}; the worst:")
     for part, stated, kind, seed in sorted(found, reverse=True)[:4]:
         print(f"   {part:.2g} of {stated:.1e}, {len(hard_motion(seed)[0])} rods, {kind}, seed {seed}")
+
+
+def long_chains() -> None:
+    for n, count in ((100, 6000), (300, 2000), (1000, 500)):
+        rng = np.random.default_rng(n)
+        mass, length = 2.0 ** rng.uniform(-1, 1, (2, n))
+        center = length * rng.uniform(0, 1, n)
+        rods = CompiledChain(mass, length, center, np.hypot(center, length * rng.uniform(0.1, 1, n))).rods
+        theta, doubt = np.concatenate([rng.uniform(-3, 3, (n, count)), nearly_straight(n, count, rng)[0]], axis=1), []
+        rates = 10.0 ** rng.uniform(-3, 4, 2 * count) * rng.normal(size=theta.shape)
+        s, c, out, variance = *np.empty((3, *theta.shape)), np.empty((2, *theta.shape))
+        sines_of_large_joints(theta, s, c)
+        for gravity in (9.81, 0.0):
+            accelerate_rods(rods, rates**2, None, s, c, 0.0, gravity, np.empty((n, 4, 2 * count)), variance, out)
+            doubt.append(np.sqrt(variance[0].max(axis=0) / (out**2).max(axis=0)))
+        bent, most = ((s * c) ** 2).mean(axis=0) >= BENT, np.maximum(*doubt)
+        print(f"{n} even rods: doubt at most {most[bent].max():.1f} of {bent.sum()} bent, {most[~bent].max():.0f} of "
+              f"{(~bent).sum()} nearly straight; 4e-15 is 36")
 
 
 def least(function: Callable[[], object]) -> float:

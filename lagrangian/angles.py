@@ -9,8 +9,8 @@ where ``pi/2`` is held in three parts, the first two short enough for ``n`` time
 ``|n| < 2**20``.  ``sin r = r + r**3 S(r**2)`` and ``cos r = 1 - r**2/2 + r**4 C(r**2)`` with the polynomials S and C of
 degree 5 whose largest relative error in sine and cosine is least (Remez), 3.8e-18 and 5.7e-20 with their coefficients
 rounded.  Nothing branches, so that loops over many angles vectorise, and the terms of a polynomial are taken in pairs,
-which wait less for one another.  Against 40 digits the errors stay below 4e-16 in relative terms, also where a sine or
-cosine nearly vanishes.
+which wait less for one another.  Against 40 digits the errors stay below 4e-16 in relative terms, or 2**-104 times
+the angles where a sine or cosine nearly vanishes.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ __all__ = ["CompiledChain"]
 
 MODELS = ("bobs", "rods")
 LONG = 10_000
-LONG_EVEN = 100  # even rods, from which on they are not asked for their doubt
+LONG_EVEN = 100  # even rods, from which on they are asked for their doubt only where they are nearly straight
 
 
 class CompiledChain:
@@ -84,10 +84,10 @@ class CompiledChain:
 
     Speed and accuracy
     ------------------
-    With numba: 25 to 40 ns a link for one long chain, 7 to 12 ns a link and chain for a thousand chains, the more
-    where rods are uneven; an answer in doubt costs 12 to 50 times more, and the first one seconds of translation.
-    Without numba the same source runs as Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a
-    third slower; such an angle loses nothing as the float that it is, but that float itself knows the angle to 1e-10.
+    With numba: 25 to 40 ns a link for one long chain, 9 to 12 ns a link and chain for a thousand chains; an answer in
+    doubt costs 12 to 50 times more, and the first one seconds of translation.  Without numba the same source runs as
+    Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a third slower; such an angle loses nothing
+    as the float that it is, but that float itself knows the angle to 1e-10.
 
     >>> chain = CompiledChain([1, 1], [2, 2], [1, 1], [1.2, 1.2], gravity=10)
     >>> chain.model, chain.acceleration(0, [0.0, 0.0], [1.0, -1.0]).round(12) + 0.0
@@ -240,7 +240,7 @@ class CompiledChain:
 
     @cached_property
     def _even(self) -> bool:
-        """Whether many chains, or a long one, are not asked for their doubt: torques might balance."""
+        """Whether a long chain that is bent is not asked for its doubt: torques might balance."""
         return not self.has_torques and bool(even(*self.rods[:, :3].T))
 
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
@@ -283,19 +283,21 @@ class CompiledChain:
         return to_floats(self._joints[0]), to_floats(self._joints[1])
 
     def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any,
-             large: bool | None = None) -> tuple[bool, Any]:
+             large: bool | None = None, asked: bool = False) -> tuple[bool, Any]:
         if not has_numba():
             return self._many(theta, omega, ax, ay, out)
         space = np.empty(9 * self._count) if self._count < LONG else self._space()
-        unasked = True if self._count >= LONG_EVEN and self._even else None
+        unasked = True if not asked and self._count >= LONG_EVEN and self._even else None
         if self.model == "bobs":
             found = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, unasked, space, out)
         else:
             tau = self.torques(theta, omega) if self.has_torques else None
             found = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, unasked, space, out)
+        if unasked and found[1]:
+            return self._one(theta, omega, ax, ay, out, large, asked=True)
         if found[0] or large or not abs(theta).max() >= 0.5 * LARGEST:
             return found  # type: ignore[no-any-return]
-        return self._one(theta, omega, ax, ay, out, True)
+        return self._one(theta, omega, ax, ay, out, True, asked)
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""
@@ -306,7 +308,7 @@ class CompiledChain:
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
         tau = self.torques(theta, omega) if self.has_torques else None
         if has_numba() and theta.ndim == 2:
-            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, not self._even, out)
+            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, out)
             if found[0]:
                 return found
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)

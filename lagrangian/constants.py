@@ -47,13 +47,9 @@ def float_row(m: Any, l: Any, H: Any, R: Any) -> tuple[Any, ...]:
     return m, l, m * R * R, m * spin, m * coupling, m * (spin + (l - H) ** 2), m * H, m * (l - H)
 
 
-def even(m: Any, l: Any, I: Any) -> Any:
-    """Whether masses, and lengths, are within a factor 10 of each other, and no rod is a tenth as wide as long.
-
-    Columns (n,), or (chains, n) for an answer of shape (chains,).
-    """
-    near = [x.max(axis=-1) <= 10 * x.min(axis=-1) for x in (m, l)]
-    return near[0] & near[1] & (m * l * l <= 100 * I).all(axis=-1)
+def even(m: Any, l: Any, I: Any) -> bool:
+    """Whether masses, and lengths, are within a factor 4 of each other, and no rod is a tenth as wide as long."""
+    return bool(m.max() <= 4 * m.min() and l.max() <= 4 * l.min() and (m * l * l <= 100 * I).all())
 
 
 def to_floats(values: Any) -> Any:

@@ -16,7 +16,7 @@ import numpy as np
 
 from .arithmetic import arithmetic_of
 from .chain import CompiledChain
-from .constants import NAMES, check_damping, check_joints, checked, even, float_row
+from .constants import NAMES, check_damping, check_joints, checked, float_row
 from .errors import QuantityError, SceneError
 from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
@@ -54,9 +54,9 @@ class Ensemble:
     Speed and accuracy
     ------------------
     Accelerations are as good as those of a :class:`lagrangian.CompiledChain`, within 4e-15 of the largest, and those
-    in doubt are found again.  A thousand chains of two to a hundred rods take 9 to 11 ns a link and chain where all are
-    even with free joints, 12 to 14 where not, a quarter more than common rods (``benchmarks/chains.py many``).  Without
-    numba NumPy's rows do it, tens of times slower.
+    in doubt are found again.  A thousand chains of two to a hundred rods take 12 to 14 ns a link and chain, a quarter
+    more than chains with common rods (``benchmarks/chains.py many``).  Without numba NumPy's rows do it, tens of times
+    slower.
 
     >>> ensemble = Ensemble([[1, 1], [1, 2], [1, 3]], [1, 1], [1, 1], [1, 1], gravity=10)
     >>> len(ensemble), ensemble.acceleration(0, [[0.5, 0.0]] * 3, [[0.0, 1.0]] * 3).round(3)[:, 0]
@@ -154,8 +154,7 @@ class Ensemble:
         """Write ``theta''`` in float64 alone; whether all are finite, and which chains are in doubt."""
         tau = self._torques(theta, omega)
         if has_numba():
-            found = accelerate_together(self._lanes, theta.T, omega.T, None if tau is None else tau.T, ax, ay,
-                                        not self._even, out.T)
+            found = accelerate_together(self._lanes, theta.T, omega.T, None if tau is None else tau.T, ax, ay, out.T)
             if found[0]:
                 return found
         rods = np.stack([row.T for row in float_row(*self._columns)], axis=1)
@@ -183,11 +182,6 @@ class Ensemble:
         light = float_row(*self._columns)[0]
         return rows_in_pairs(light.T, *(x.T for x in rest)), *(None if x is None else x.T + 0j
                                                                for x in (self.damping, self.springs))
-
-    @cached_property
-    def _even(self) -> bool:
-        """Whether chains are not asked for their doubt, as for :class:`lagrangian.CompiledChain`."""
-        return self.damping is None is self.springs and bool(even(*float_row(*self._columns)[:3]).all())
 
 
 def place(j: Any, count: int, these: str) -> int:

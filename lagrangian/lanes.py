@@ -78,9 +78,9 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
     Returns whether all are finite and all angles small enough, and whether an answer is in doubt.
 
     Shapes: rods (n, 8), or as of :func:`in_lanes`; theta, omega, out (n, chains); tau the same or None; work
-    (n, VAR_W2), or with all its rows where excess is (chains,), not None.  That is written: how far the largest
-    variance is beyond what is in no doubt, positive or no number where the answer is in doubt.  All chains are on one
-    support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
+    (n, 9 * LANES); excess (chains,), written: how far the largest variance is beyond what is in no doubt, positive or
+    no number where the answer is in doubt.  All chains are on one support, with acceleration ``(ax, ay)``.  Small
+    enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
     step = LINE if rods.ndim == 2 else 1
@@ -88,7 +88,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
     largest = nought = again = 0.0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
-        held[PUU:(VAR_QN if excess is None else ANGLE)] = 0.0
+        held[PUU:ANGLE] = 0.0
         row = theta[n - 1, first:first + width]
         for j in range(width):
             held[HERE + j] = row[j]
@@ -145,18 +145,16 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                     o[W2 + j] = (l * qn - t) * r
                     g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
                     f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
-                if excess is not None:
-                    llr, w = l * lr, l * o[W2 + j]
-                    o[VAR_W2 + j] = llr * llr * held[VAR_QN + j] + w * w
-                    o[VAR_W1 + j] = llr * llr * held[VAR_PUN + j]
+                llr, w = l * lr, l * o[W2 + j]
+                o[VAR_W2 + j] = llr * llr * held[VAR_QN + j] + w * w
+                o[VAR_W1 + j] = llr * llr * held[VAR_PUN + j]
                 s, c = o[SIN + j], o[COS + j]
-                if excess is not None:
-                    b = rate * rate * (mH + l * Er)
-                    held[VAR_PUN + j], held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
-                    if tau is not None:
-                        w, g, h = t * lr, t * g0, t * g1
-                        o[VAR_W2 + j] += w * w
-                        held[VAR_QN + j] += g * g * s * s + h * h * c * c
+                b = rate * rate * (mH + l * Er)
+                held[VAR_PUN + j], held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
+                if tau is not None:
+                    w, g, h = t * lr, t * g0, t * g1
+                    o[VAR_W2 + j] += w * w
+                    held[VAR_QN + j] += g * g * s * s + h * h * c * c
                 Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
                 f0, f1, f2, f3 = turned_force(s, c, f0, f1, f2, f3)
                 held[PUU + j], held[PUN + j], held[PNN + j], held[DELTA + j] = Puu, Pun, Pnn, det
@@ -164,8 +162,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 held[KU + j], held[KN + j] = f2, f3
         for j in range(width):
             held[TU + j], held[TN + j] = ay, ax
-        if excess is not None:
-            held[C_UU:SPREAD + LANES] = 0.0
+        held[C_UU:SPREAD + LANES] = 0.0
         for k in range(n):
             o = work[k]
             fetch(out, k + AHEAD, first, first + width, step)
@@ -180,42 +177,38 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 s, c, tu, tn = o[SIN + j], o[COS + j], held[TU + j], held[TN + j]
                 au, an = tu * c + tn * s, tn * c - tu * s
                 lz = l * (o[RATE + j] * o[RATE + j])
-                if excess is not None:
-                    uu, un, nn, v = spread(s, c, tu, tn, au - lz, lz, o[W0 + j], l * o[W1 + j], o[VAR_W1 + j],
-                                           o[VAR_W2 + j], held[C_UU + j], held[C_UN + j], held[C_NN + j])
-                    held[C_UU + j], held[C_UN + j], held[C_NN + j] = uu, un, nn
-                    if rods.ndim == 3:
-                        per = 1.0 / l
-                    held[SPREAD + j] = larger(v * (per * per), held[SPREAD + j])
+                uu, un, nn, v = spread(s, c, tu, tn, au - lz, lz, o[W0 + j], l * o[W1 + j], o[VAR_W1 + j],
+                                       o[VAR_W2 + j], held[C_UU + j], held[C_UN + j], held[C_NN + j])
+                held[C_UU + j], held[C_UN + j], held[C_NN + j] = uu, un, nn
+                if rods.ndim == 3:
+                    per = 1.0 / l
+                held[SPREAD + j] = larger(v * (per * per), held[SPREAD + j])
                 tu = au - lz
                 q = o[W2 + j] + o[W1 + j] * tu
                 tn, x = o[W0 + j] * an - l * q, -(o[W3 + j] * an + q)
                 held[TU + j], held[TN + j], held[FOUND + j] = tu, tn, x
                 held[NOUGHT + j] += 0.0 * x
-                if excess is not None:
-                    held[SIZE + j] = larger(x * x, held[SIZE + j])
+                held[SIZE + j] = larger(x * x, held[SIZE + j])
             row = out[k, first:first + width]
             for j in range(width):
                 row[j] = held[FOUND + j]
-        if excess is not None:
-            row = excess[first:first + width]
-            for j in range(width):
-                lost = 0.0 * (held[C_UU + j] + held[C_NN + j])
-                x = lost + (held[SPREAD + j] - DOUBT * DOUBT * held[SIZE + j])
-                row[j] = x
-                held[ASKED + j] = (held[ASKED + j] if x <= 0.0 else 1.0) + 0.0
+        row = excess[first:first + width]
+        for j in range(width):
+            lost = 0.0 * (held[C_UU + j] + held[C_NN + j])
+            x = lost + (held[SPREAD + j] - DOUBT * DOUBT * held[SIZE + j])
+            row[j] = x
+            held[ASKED + j] = (held[ASKED + j] if x <= 0.0 else 1.0) + 0.0
     for j in range(LANES):
         largest = max(largest, held[ANGLE + j])
         nought, again = nought + held[NOUGHT + j], again + held[ASKED + j]
     return nought == 0.0 and largest <= 0.5 * LARGEST, again > 0.0
 
 
-def accelerate_together(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, asked: bool,
+def accelerate_together(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float,
                         out: Any) -> tuple[bool, Any]:
-    """:func:`accelerate_lanes`, ``asked`` for doubt or not; whether it could, and which are in doubt or False."""
+    """:func:`accelerate_lanes`: whether it could, and which answers are in doubt, False for none."""
     n, chains = theta.shape
-    excess: Any = np.empty(chains) if asked else None
-    work = np.empty((n, VAR_W1 + LANES if asked else VAR_W2))
+    excess, work = np.empty(chains), np.empty((n, VAR_W1 + LANES))
     done, again = machine(accelerate_lanes)(rods, theta, omega, tau, ax, ay, work, excess, out)
     return done, again and ~(excess <= 0.0)
 

@@ -11,41 +11,61 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines
+from .machine import reordered
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 
 __all__ = ["single_bobs", "single_rods"]
 
-
-def joint_sines(theta: Any, omega: Any, large: Any, s: Any, c: Any, z: Any) -> float:
-    """Sine and cosine of every joint angle, and the squares of the rates; all shapes (n,).  Returns the largest angle.
-
-    ``large`` is None where no angle passes ``LARGEST / 2``, so that the code for larger ones is not even translated.
-    """
-    n = theta.shape[0]
-    largest = 0.0
-    for k in range(n):
-        largest = max(largest, abs(theta[k]))
-        z[k] = omega[k] * omega[k]
-    if large is None:
-        s[0], c[0] = sines(theta[0], 0.0)
-        for k in range(1, n):
-            d, e = difference(theta[k], theta[k - 1])
-            s[k], c[k] = sines(d, e)
-    else:
-        s[0], c[0] = np.sin(theta[0]), np.cos(theta[0])
-        for k in range(1, n):
-            d, e = difference(theta[k], theta[k - 1])
-            x, y, p, q = np.sin(d), np.cos(d), np.sin(e), np.cos(e)
-            s[k], c[k] = x * q + y * p, y * q - x * p
-    return largest
+BENT = 0.05  # of even chains of a hundred rods, those more bent are in no doubt (benchmarks/hard_chains.py bent)
 
 
+@reordered
+def count_beyond(theta: Any, limit: float) -> float:
+    """How many angles are no smaller than the limit."""
+    total = 0.0
+    for k in range(theta.shape[0]):
+        total += 1.0 if abs(theta[k]) >= limit else 0.0
+    return total
+
+
+@reordered
+def bend(s: Any, c: Any) -> Any:
+    """The mean of ``(s c)**2``, 1/8 where joints are at any angle, 0 where all are straight, folded or square."""
+    total = 0.0
+    for k in range(s.shape[0]):
+        total += (s[k] * c[k]) ** 2
+    return total / s.shape[0]
+
+
+@reordered
 def finite(out: Any) -> bool:
     """Whether every number is."""
     total = 0.0
     for k in range(out.shape[0]):
         total += 0.0 * out[k]
     return total == 0.0
+
+
+def joint_sines(theta: Any, omega: Any, large: Any, s: Any, c: Any, z: Any) -> bool:
+    """Sine and cosine of every joint angle, and the squares of the rates; all shapes (n,).  Whether they are right.
+
+    ``large`` is None where no angle passes ``LARGEST / 2``, so that the code for larger ones is not even translated.
+    """
+    n = theta.shape[0]
+    for k in range(n):
+        z[k] = omega[k] * omega[k]
+    if large is None:
+        s[0], c[0] = sines(theta[0], 0.0)
+        for k in range(1, n):
+            d, e = difference(theta[k], theta[k - 1])
+            s[k], c[k] = sines(d, e)
+        return count_beyond(theta, 0.5 * LARGEST) == 0.0
+    s[0], c[0] = np.sin(theta[0]), np.cos(theta[0])
+    for k in range(1, n):
+        d, e = difference(theta[k], theta[k - 1])
+        x, y, p, q = np.sin(d), np.cos(d), np.sin(e), np.cos(e)
+        s[k], c[k] = x * q + y * p, y * q - x * p
+    return True
 
 
 def judged(out: Any, doubt: Any) -> tuple[bool, bool]:
@@ -64,20 +84,23 @@ def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: floa
                 out: Any) -> tuple[bool, bool]:
     """Write ``theta''`` of rods to ``out``, shape (n,); whether it is finite and right with these sines; its doubt.
 
-    ``tau`` is (n,) or None; ``large`` None or True, see :func:`joint_sines`; ``unasked`` True where the doubt is not
-    asked, else None, so that the code without it is not translated; ``space``, (9 n,), is for intermediate values.
+    ``tau`` is (n,) or None; ``large`` None or True, see :func:`joint_sines`; ``unasked`` True where a chain that is
+    bent is not asked for its doubt, else None, so that the code for that is not translated; one that is not bent is
+    left undone and in doubt.  ``space``, (9 n,), is for intermediate values.
     """
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:7 * n].reshape(n, 4)
-    largest = joint_sines(theta, omega, large, s, c, z)
+    right = joint_sines(theta, omega, large, s, c, z)
     if unasked is None:
         doubt = space[7 * n:9 * n].reshape(2, n)
         accelerate_rods(rods, z, tau, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt[0])
+    elif bend(s, c) < BENT:
+        done, doubtful = False, True
     else:
         accelerate_rods(rods, z, tau, s, c, ax, ay, work, None, out)
         done, doubtful = finite(out), False
-    return done and (large is not None or largest < 0.5 * LARGEST), doubtful
+    return done and right, doubtful
 
 
 def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: Any, unasked: Any, space: Any,
@@ -85,12 +108,14 @@ def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: 
     """The same for bobs."""
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:5 * n].reshape(n, 2)
-    largest = joint_sines(theta, omega, large, s, c, z)
+    right = joint_sines(theta, omega, large, s, c, z)
     if unasked is None:
         doubt = space[5 * n:6 * n]
         accelerate_bobs(bobs, z, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt)
+    elif bend(s, c) < BENT:
+        done, doubtful = False, True
     else:
         accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
         done, doubtful = finite(out), False
-    return done and (large is not None or largest < 0.5 * LARGEST), doubtful
+    return done and right, doubtful

@@ -458,3 +458,28 @@ def test_estimated_errors_of_hard_motions_are_honest(seed):
     motion, true = (simulate(*hard_motion(seed), digits=digits) for digits in (None, 26))
 
     assert part_of_the_stated_error(motion, true) < 0.5
+
+
+def nearly_straight(n, count, rng):
+    """States of even chains that lose most: straight or folded but for little, turning together or not."""
+    theta = np.pi * rng.integers(0, 2, (n, count)) + 10.0 ** rng.uniform(-9, -1, count) * rng.normal(size=(n, count))
+    omega = 10.0 ** rng.uniform(-3, 4, count) * rng.normal(size=(n, count))
+    return theta, np.where(rng.random(count) < 0.5, omega[:1], omega)
+
+
+@pytest.mark.parametrize("gravity", [9.81, 0])
+@pytest.mark.parametrize(("n", "count"), [(3, 200), (100, 30)])
+def test_even_chains_that_are_nearly_straight(n, count, gravity):
+    """Alone and together; nothing was asked of their doubt before, and up to 1.5e-14 was lost."""
+    rng = np.random.default_rng(n)
+    mass, length = rng.uniform(0.5, 1.5, (2, n))
+    center = length * rng.uniform(0.3, 0.7, n)
+    chain = CompiledChain(mass, length, center, np.sqrt(center**2 + rng.uniform(0.05, 0.15, n) * length**2), gravity)
+    theta, omega = nearly_straight(n, count, rng)
+    together = chain.acceleration(0, theta, omega)
+    with mpmath.workdps(50):
+        for j in range(count):
+            state = theta[:, j].copy(), omega[:, j].copy()
+            true = chain.acceleration(mpmath.mpf(0), *([mpmath.mpf(x) for x in numbers] for numbers in state))
+            for found in (chain.acceleration(0, *state), together[:, j]):
+                assert max(abs(found - true)) <= 4e-15 * max(abs(true))
