@@ -49,7 +49,7 @@ __all__ = ["CompiledChain"]
 
 MODELS = ("bobs", "rods")
 LONG = 10_000
-LONG_EVEN = 100  # even rods, from which on they are asked for their doubt only where they are nearly straight
+LONG_EVEN = 100  # even rods, from which on they are asked for their doubt only if straight somewhere
 
 
 class CompiledChain:

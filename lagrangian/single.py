@@ -16,7 +16,7 @@ from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 
 __all__ = ["single_bobs", "single_rods"]
 
-BENT = 0.05  # of even chains of a hundred rods, those more bent are in no doubt (benchmarks/hard_chains.py bent)
+BENT = 0.01  # long even chains whose joints are so bent are in no doubt (benchmarks/hard_chains.py bent)
 
 
 @reordered
@@ -29,12 +29,18 @@ def count_beyond(theta: Any, limit: float) -> float:
 
 
 @reordered
-def bend(s: Any, c: Any) -> Any:
-    """The mean of ``(s c)**2``, 1/8 where joints are at any angle, 0 where all are straight, folded or square."""
-    total = 0.0
-    for k in range(s.shape[0]):
-        total += (s[k] * c[k]) ** 2
-    return total / s.shape[0]
+def bent(s: Any, c: Any) -> bool:
+    """Whether every eight joints in a row are, by the mean of ``(s c)**2``, 1/8 where angles are any.
+
+    Joints that are straight, folded or square count nothing.
+    """
+    straight = 0.0
+    for first in range(0, s.shape[0] - 7, 8):
+        total = 0.0
+        for k in range(first, first + 8):
+            total += (s[k] * c[k]) ** 2
+        straight += 1.0 if total < 8 * BENT else 0.0
+    return straight == 0.0
 
 
 @reordered
@@ -95,7 +101,7 @@ def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: floa
         doubt = space[7 * n:9 * n].reshape(2, n)
         accelerate_rods(rods, z, tau, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt[0])
-    elif bend(s, c) < BENT:
+    elif not bent(s, c):
         done, doubtful = False, True
     else:
         accelerate_rods(rods, z, tau, s, c, ax, ay, work, None, out)
@@ -113,7 +119,7 @@ def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: 
         doubt = space[5 * n:6 * n]
         accelerate_bobs(bobs, z, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt)
-    elif bend(s, c) < BENT:
+    elif not bent(s, c):
         done, doubtful = False, True
     else:
         accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
