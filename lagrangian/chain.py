@@ -49,6 +49,7 @@ __all__ = ["CompiledChain"]
 
 MODELS = ("bobs", "rods")
 LONG = 10_000
+UNPICKLED = ("_kept", "_single", "_fine", "_steady_fine")  # found again
 LONG_EVEN = 100  # even rods, from which on they are asked for their doubt only if straight somewhere
 
 
@@ -70,9 +71,9 @@ class CompiledChain:
     Floats are taken as the exact numbers they are, SymPy numbers and fractions too.  Accelerations in float64 round:
     within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart.  Where float64 leaves that in doubt, at one
     ordinary state in 750 and at one in nineteen of such chains, the same recursion runs again with 31 digits or more.
-    Not asked are chains with free joints whose rods are even (masses and lengths within a factor 10), many at once or
-    of a hundred links and more: of 6000 ordinary states none was beyond 4e-15, but 1e-14 was seen, for two rods at
-    rates of 1e8.
+    Not asked is one chain of a hundred links and more with free joints whose rods are even (masses and lengths within a
+    factor 4) while all its joints are bent: what it would be in doubt of is a fifth of 4e-15 at most
+    (``benchmarks/hard_chains.py bent``).
 
     Raises
     ------
@@ -117,7 +118,7 @@ class CompiledChain:
         return self._count
 
     def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name not in ("_kept", "_fine", "_steady_fine")}
+        return {name: value for name, value in self.__dict__.items() if name not in UNPICKLED}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _kept=local())
@@ -222,14 +223,14 @@ class CompiledChain:
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """
-        if not is_plain(t, theta, omega):
+        if not (is_plain(t, theta, omega) and 0 < theta.ndim < 3 and len(theta) == self._count):
             arithmetic = arithmetic_of(t, theta, omega)
             if arithmetic is not None:
                 return self._exactly(arithmetic, t, theta, omega)
             t = float_time(t)
-        theta, omega = float_states(theta, omega, self._count)
+            theta, omega = float_states(theta, omega, self._count)
         ax, ay = self.steady_pull if self._steady else map(float, self.pull(t))
-        out = np.empty_like(theta)
+        out = np.empty(theta.shape)
         done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
         if not done:
             raise QuantityError(why_no_answer(t, theta, omega))
@@ -239,9 +240,9 @@ class CompiledChain:
         return out
 
     @cached_property
-    def _even(self) -> bool:
-        """Whether a long chain that is bent is not asked for its doubt: torques might balance."""
-        return not self.has_torques and bool(even(*self.rods[:, :3].T))
+    def _unasked(self) -> bool | None:
+        """True where the chain is not asked for its doubt while it is bent, else None: torques might balance."""
+        return self._count >= LONG_EVEN and not self.has_torques and even(*self.rods[:, :3].T) or None
 
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n, chains) from exact numbers, rounded once."""
@@ -284,20 +285,24 @@ class CompiledChain:
 
     def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any,
              large: bool | None = None, asked: bool = False) -> tuple[bool, Any]:
-        if not has_numba():
+        single, constants = self._single
+        if single is None:
             return self._many(theta, omega, ax, ay, out)
         space = np.empty(9 * self._count) if self._count < LONG else self._space()
-        unasked = True if not asked and self._count >= LONG_EVEN and self._even else None
-        if self.model == "bobs":
-            found = machine(single_bobs)(self.bobs, theta, omega, ax, ay, large, unasked, space, out)
-        else:
-            tau = self.torques(theta, omega) if self.has_torques else None
-            found = machine(single_rods)(self.rods, theta, omega, tau, ax, ay, large, unasked, space, out)
-        if unasked and found[1]:
+        tau = self.torques(theta, omega) if self.has_torques else None
+        unasked = None if asked else self._unasked
+        done, doubtful = single(constants, theta, omega, tau, ax, ay, large, unasked, space, out)
+        if unasked and doubtful:
             return self._one(theta, omega, ax, ay, out, large, asked=True)
-        if found[0] or large or not abs(theta).max() >= 0.5 * LARGEST:
-            return found  # type: ignore[no-any-return]
+        if done or large or not abs(theta).max() >= 0.5 * LARGEST:
+            return done, doubtful
         return self._one(theta, omega, ax, ay, out, True, asked)
+
+    @cached_property
+    def _single(self) -> tuple[Any, Any]:
+        """The machine code for one chain, None without numba, and the constants that it takes."""
+        function, constants = (single_bobs, self.bobs) if self.model == "bobs" else (single_rods, self.rods)
+        return machine(function) if has_numba() else None, constants
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""

@@ -109,9 +109,9 @@ def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: floa
     return done and right, doubtful
 
 
-def single_bobs(bobs: Any, theta: Any, omega: Any, ax: float, ay: float, large: Any, unasked: Any, space: Any,
-                out: Any) -> tuple[bool, bool]:
-    """The same for bobs."""
+def single_bobs(bobs: Any, theta: Any, omega: Any, tau: None, ax: float, ay: float, large: Any, unasked: Any,
+                space: Any, out: Any) -> tuple[bool, bool]:
+    """The same for bobs, which have no torques."""
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:5 * n].reshape(n, 2)
     right = joint_sines(theta, omega, large, s, c, z)

@@ -19,8 +19,9 @@ PLAIN_TIMES = (float, int, np.float64)
 
 
 def is_plain(t: Any, theta: Any, omega: Any) -> bool:
-    """Whether a float, or an int, comes with two float64 arrays: the common case, of which nothing else is asked."""
+    """Whether a float, or an int, comes with two contiguous float64 arrays of one shape: nothing else is asked then."""
     return (type(theta) is np.ndarray is type(omega) and theta.dtype is FLOAT64 is omega.dtype
+            and theta.shape == omega.shape and theta.flags.c_contiguous and omega.flags.c_contiguous
             and type(t) in PLAIN_TIMES)
 
 
@@ -56,11 +57,8 @@ def float_state(values: Any, name: str, n: int) -> Any:
 
 def float_states(theta: Any, omega: Any, n: int) -> tuple[Any, Any]:
     """Angles and rates as :func:`float_state` gives them, of the same shape."""
-    if not (type(theta) is np.ndarray is type(omega) and theta.dtype is FLOAT64 is omega.dtype
-            and (theta.shape == (n,) or theta.ndim == 2 and len(theta) == n) and theta.shape == omega.shape
-            and theta.flags.c_contiguous and omega.flags.c_contiguous):
-        theta, omega = float_state(theta, "theta", n), float_state(omega, "omega", n)
-        _check_same(theta, omega)
+    theta, omega = float_state(theta, "theta", n), float_state(omega, "omega", n)
+    _check_same(theta, omega)
     return theta, omega
 
 
