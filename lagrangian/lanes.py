@@ -3,7 +3,8 @@
 Each chain has its own state, arrays of shape (n, chains) in any order of memory; the rods are the same for all, or each
 chain has its own.  Chains are taken LANES at a time; whatever is carried from link to link is one flat array whose rows
 lie LANES apart, a constant known when the loops are translated, so that the compiler sees that rows do not overlap and
-the loop over lanes becomes vector instructions.  States are copied to such rows first, a link at a time.
+the loop over lanes becomes vector instructions.  States are copied to such rows first, a link at a time; but GROUP
+links, a line of memory, at a time where the same links of all chains fall to the same few lines of the cache.
 
 Rods of their own are five numbers, m, l, H, Ic and J, from which the other constants follow without cancellation:
 reading them from memory costs more than that.  They stand in the order in which the loops go through them: LANES
@@ -34,7 +35,9 @@ __all__ = ["accelerate_rows", "accelerate_together", "in_lanes"]
 
 LANES = 64  # 32 to 128 cost the same
 AHEAD = 4  # links
-LINE = 8  # numbers in a line of memory
+GROUP = 8  # numbers in a line of memory
+PART = LANES // GROUP
+CROWDED = 64  # links, or a multiple: a cache has 64 places for a line, and the next chain's lines go to the same eight
 
 # Rows of what is carried from link to link: inertia and forces of all beyond, two variances; the largest angle, 0
 # theta'', 1 where an answer is in doubt; the angles of this rod and the one before, its torque.
@@ -70,39 +73,72 @@ def fetch(rows: Any, k: int, first: int, end: int, step: int) -> None:
             prefetched(rows, k, j)
 
 
+@inlined
+def take(rows: Any, k: int, first: int, end: int, groups: Any, which: int, held: Any, at: int) -> None:
+    """Copy row k of some chains, from the last to the first: from where it lies, or a group at a time."""
+    if groups is None:
+        fetch(rows, k - AHEAD, first, end, GROUP if rows.strides[1] == rows.itemsize else 1)
+        row = rows[k, first:end]
+        for j in range(end - first):
+            held[at + j] = row[j]
+    else:
+        group, place = groups[which], k % GROUP
+        if place == GROUP - 1:
+            for j in range(end - first):
+                for i in range(GROUP):
+                    group[i * LANES + j] = rows[k - GROUP + 1 + i, first + j]
+        part = first + place * PART
+        fetch(rows, k - place - 1, part, min(part + PART, end), 1)
+        for j in range(end - first):
+            held[at + j] = group[place * LANES + j]
+
+
+@inlined
+def give(rows: Any, k: int, first: int, end: int, groups: Any, held: Any, at: int) -> None:
+    """Write row k of some chains, from the first to the last: to where it lies, or a group at a time."""
+    if groups is None:
+        fetch(rows, k + AHEAD, first, end, GROUP if rows.strides[1] == rows.itemsize else 1)
+        row = rows[k, first:end]
+        for j in range(end - first):
+            row[j] = held[at + j]
+    else:
+        group, place = groups[0], k % GROUP
+        part = first + place * PART
+        fetch(rows, k - place + GROUP, part, min(part + PART, end), 1)
+        for j in range(end - first):
+            group[place * LANES + j] = held[at + j]
+        if place == GROUP - 1:
+            for j in range(end - first):
+                for i in range(GROUP):
+                    rows[k - GROUP + 1 + i, first + j] = group[i * LANES + j]
+
+
 @allocating
-def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, excess: Any,
-                     out: Any) -> tuple[bool, bool]:
+def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, groups: Any,
+                     excess: Any, out: Any) -> tuple[bool, bool]:
     """Write ``theta''`` of all chains to ``out``, float64 only.
 
     Returns whether all are finite and all angles small enough, and whether an answer is in doubt.
 
     Shapes: rods (n, 8), or as of :func:`in_lanes`; theta, omega, out (n, chains); tau the same or None; work
-    (n, 9 * LANES); excess (chains,), written: how far the largest variance is beyond what is in no doubt, positive or
-    no number where the answer is in doubt.  All chains are on one support, with acceleration ``(ax, ay)``.  Small
-    enough is :data:`lagrangian.angles.LARGEST` / 2.
+    (n, 9 * LANES); groups None, or (3, GROUP * LANES), and then GROUP divides n; excess (chains,), written: how far the
+    largest variance is beyond what is in no doubt, positive or no number where the answer is in doubt.  All chains are
+    on one support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
-    step = LINE if rods.ndim == 2 else 1
     held = np.zeros(TAU + LANES)
     largest = nought = again = 0.0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
         held[PUU:ANGLE] = 0.0
-        row = theta[n - 1, first:first + width]
-        for j in range(width):
-            held[HERE + j] = row[j]
+        take(theta, n - 1, first, first + width, groups, 0, held, HERE)
         for i in range(n):
             k = n - 1 - i
             o = work[k]
-            fetch(theta, k - AHEAD, first, first + width, step)
-            fetch(omega, k - AHEAD, first, first + width, step)
             if rods.ndim == 3:
-                fetch(rods[first // LANES], n - 1 - k + AHEAD, 0, rods.shape[2], LINE)
+                fetch(rods[first // LANES], n - 1 - k + AHEAD, 0, rods.shape[2], GROUP)
             if k > 0:
-                row = theta[k - 1, first:first + width]
-                for j in range(width):
-                    held[BEFORE + j] = row[j]
+                take(theta, k - 1, first, first + width, groups, 0, held, BEFORE)
             else:
                 held[BEFORE:BEFORE + LANES] = 0.0
             for j in range(width):
@@ -111,13 +147,9 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 o[SIN + j], o[COS + j] = sines(d, e)
                 held[ANGLE + j] = larger(abs(here), held[ANGLE + j])
                 held[HERE + j] = before
-            row = omega[k, first:first + width]
-            for j in range(width):
-                o[RATE + j] = row[j]
+            take(omega, k, first, first + width, groups, 1, o, RATE)
             if tau is not None:
-                row = tau[k, first:first + width]
-                for j in range(width):
-                    held[TAU + j] = row[j]
+                take(tau, k, first, first + width, groups, 2, held, TAU)
             if rods.ndim == 2:
                 m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
                 J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
@@ -165,7 +197,6 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
         held[C_UU:SPREAD + LANES] = 0.0
         for k in range(n):
             o = work[k]
-            fetch(out, k + AHEAD, first, first + width, step)
             if rods.ndim == 2:
                 l = rods[k, 1]
                 per = 1.0 / l
@@ -189,9 +220,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 held[TU + j], held[TN + j], held[FOUND + j] = tu, tn, x
                 held[NOUGHT + j] += 0.0 * x
                 held[SIZE + j] = larger(x * x, held[SIZE + j])
-            row = out[k, first:first + width]
-            for j in range(width):
-                row[j] = held[FOUND + j]
+            give(out, k, first, first + width, groups, held, FOUND)
         row = excess[first:first + width]
         for j in range(width):
             lost = 0.0 * (held[C_UU + j] + held[C_NN + j])
@@ -209,7 +238,9 @@ def accelerate_together(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, 
     """:func:`accelerate_lanes`: whether it could, and which answers are in doubt, False for none."""
     n, chains = theta.shape
     excess, work = np.empty(chains), np.empty((n, VAR_W1 + LANES))
-    done, again = machine(accelerate_lanes)(rods, theta, omega, tau, ax, ay, work, excess, out)
+    crowded = theta.strides[1] > theta.itemsize and n % CROWDED == 0
+    groups = np.empty((3, GROUP * LANES)) if crowded else None
+    done, again = machine(accelerate_lanes)(rods, theta, omega, tau, ax, ay, work, groups, excess, out)
     return done, again and ~(excess <= 0.0)
 
 

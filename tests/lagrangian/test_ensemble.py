@@ -24,6 +24,7 @@ from lagrangian import (
     compile_equations,
     ensemble as ensembles,
     euler_lagrange,
+    lanes,
     redone,
 )
 from lagrangian.constants import rod_row
@@ -73,6 +74,21 @@ def test_an_ensemble_moves_as_its_chains_alone(has_numba, data, count, n):
 
     assert together.shape == (count, n) == ensemble.shape
     assert apart(together, one_by_one(ensemble, 0.5, theta, omega)) < 8e-15
+
+
+@pytest.mark.parametrize("n", [63, 64, 65, 128])
+@pytest.mark.parametrize("damping", [None, 0.5])
+def test_links_that_crowd_the_cache_are_taken_in_groups(n, damping, monkeypatch):
+    """Chains of 64 links and multiples, the last block of chains not full: as those near by, which are not."""
+    rng = np.random.default_rng(n)
+    ensemble, (theta, omega) = Ensemble(*ordinary(rng, 70, n), damping=damping), state(rng, 70, n)
+    groups, found = [], lanes.machine
+    monkeypatch.setattr(lanes, "machine", lambda function: lambda *given: groups.append(given[7]) or
+                        found(function)(*given))
+    together = ensemble.acceleration(0, theta, omega)
+
+    assert [group is not None for group in groups] == [n % 64 == 0]
+    assert apart(together, one_by_one(ensemble, 0, theta, omega)) < 8e-15
 
 
 def test_the_chains_of_an_ensemble_are_those_of_its_rows():
