@@ -85,8 +85,11 @@ def _sympy_number(value: Expr, what: str) -> Any:
         return rational(_finite(value, value.is_finite is True, what))
     if value.free_symbols or not value.is_number or value.is_extended_real is False:
         raise BadTypeError(f"{what} must be a real number, but it is the expression {value}.  Substitute real numbers.")
-    if value.is_finite is not True:
+    if value.is_finite is False:
         raise BadInputError(f"{what} must be finite, but it is {value}.  Give a finite real number.")
+    if value.is_finite is None:
+        raise BadInputError(f"{what} must be finite, and SymPy does not tell whether {value} is.  Give its digits, as "
+                            f"in ({value}).evalf(50).")
     return value
 
 

@@ -128,13 +128,13 @@ def arithmetic_of(*arrays: Any) -> Arithmetic | None:
 
 
 def _note_types(values: Any, kinds: dict[type, Any]) -> None:
-    """A number of every type in an array of objects, in nested lists, or alone."""
+    """A number of every type in an array of objects, in lists of lists or arrays, or alone."""
     if isinstance(values, np.ndarray):
         values = values.ravel().tolist() if values.dtype == object else ()
     elif not isinstance(values, (list, tuple)):
         values = (values,)
     for x in values:
-        if isinstance(x, (list, tuple)):
+        if isinstance(x, (list, tuple, np.ndarray)):
             _note_types(x, kinds)
         else:
             kinds[type(x)] = x

@@ -43,7 +43,7 @@ from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
 from .states import exact_states, float_states, float_time, is_plain, why_no_answer
-from .torques import exact_torques, joint_torques, joint_torques_of_many
+from .torques import exact_torques, joint_torques, joint_torques_of_many, without_limit
 
 __all__ = ["CompiledChain"]
 
@@ -234,10 +234,25 @@ class CompiledChain:
         done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
         if not done:
             raise QuantityError(why_no_answer(t, theta, omega))
+        if self._may_lack_limit:
+            self.check_limit(t, theta, omega, self.torques(theta, omega), out)
         if doubtful is not False and np.any(doubtful):
             n, doubtful = len(self), np.atleast_1d(doubtful)
             out.reshape(n, -1)[:, doubtful] = self._again(t, *(x.reshape(n, -1)[:, doubtful] for x in (theta, omega)))
         return out
+
+    @cached_property
+    def _may_lack_limit(self) -> bool:
+        """Whether some rods have no mass and others are turned by joints."""
+        return self.has_torques and bool((self._columns[0] == 0).any())
+
+    def check_limit(self, t: Any, theta: Any, omega: Any, torques: Any, found: Any) -> None:
+        """Raise QuantityError where ``theta''`` has no limit, see :func:`lagrangian.torques.without_limit`."""
+        m, l = self.rods[:, :2].T.tolist()
+        if np.any(without_limit(max(m), min(l), max(map(abs, self.steady_pull)), omega, torques, found)):
+            raise QuantityError(f"theta'' has no limit at t = {t}, theta = {theta.tolist()}: rods without mass lie "
+                                f"folded in one line, and the torques of joints beyond turn them infinitely fast.  "
+                                f"Give them a mass, or other angles.")
 
     @cached_property
     def _unasked(self) -> bool | None:
@@ -340,6 +355,8 @@ class CompiledChain:
         for chain in np.ndindex(theta.shape[1:]):
             at = (slice(None), *chain)
             out[at] = self._in_arithmetic(arithmetic, t, theta[at], omega[at])
+            if self._may_lack_limit:
+                self.check_limit(t, theta[at], omega[at], self.torques(theta[at], omega[at]), out[at])
         if not all(map(arithmetic.answers, out.flat)):
             raise QuantityError(f"theta'' is not finite at t = {t}, theta = {theta.tolist()}, omega = "
                                 f"{omega.tolist()}: give finite numbers, or balls that are narrower.")

@@ -27,6 +27,8 @@ from .torques import joint_torques, joint_torques_of_each
 
 __all__ = ["Ensemble", "place"]
 
+SUSPICIOUS = 1e30  # rad/s**2, where there may be no answer
+
 
 class Ensemble:
     """Many chains of n rods, each with rods of its own, on one support; O(n) accelerations of all at once.  Immutable.
@@ -120,20 +122,33 @@ class Ensemble:
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """
-        if not is_plain(t, theta, omega) and arithmetic_of(t, theta, omega) is not None:
-            theta, omega = (self._checked(np.asarray(x, dtype=object), name) for x, name in
-                            ((theta, "theta"), (omega, "omega")))
-            return np.stack([chain.acceleration(t, *state) for chain, *state in zip(self, theta, omega, strict=True)])
-        t = float_time(t)
-        theta, omega = self._checked(floats(theta, "theta"), "theta"), self._checked(floats(omega, "omega"), "omega")
-        out = np.empty_like(theta)
+        if not (is_plain(t, theta, omega) and theta.shape == self._columns[0].shape):
+            if arithmetic_of(t, theta, omega) is not None:
+                return self._exactly(t, theta, omega)
+            t = float_time(t)
+            theta, omega = (self._checked(floats(x, name), name) for x, name in ((theta, "theta"), (omega, "omega")))
+        out = np.empty(theta.shape)
         ax, ay = self._first.steady_pull if self.support.steady else map(float, self._first.pull(t))
         done, doubtful = self._accelerated(theta, omega, ax, ay, out)
         if not done:
             raise QuantityError(why_no_answer(t, theta, omega))
+        if self._may_lack_limit:
+            for j in np.flatnonzero(abs(out).max(axis=1) > SUSPICIOUS).tolist():
+                self[j].acceleration(t, theta[j], omega[j])  # which says so
         if doubtful is not False and np.any(doubtful):
             out[doubtful] = self._again(t, doubtful, theta[doubtful], omega[doubtful])
         return out
+
+    @cached_property
+    def _may_lack_limit(self) -> bool:
+        """As for one chain, :meth:`lagrangian.CompiledChain.check_limit`."""
+        return not self.damping is None is self.springs and bool((self._columns[0] == 0).any())
+
+    def _exactly(self, t: Any, theta: Any, omega: Any) -> Any:
+        """``theta''`` in another arithmetic, of one chain after the other."""
+        theta, omega = (self._checked(np.asarray(x, dtype=object), name) for x, name in
+                        ((theta, "theta"), (omega, "omega")))
+        return np.stack([chain.acceleration(t, *state) for chain, *state in zip(self, theta, omega, strict=True)])
 
     def _again(self, t: Any, doubtful: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of some chains from exact numbers: all at once in pairs, or one after the other."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
+from math import isfinite, nan
 from numbers import Complex, Real
 from typing import Any, TypeVar
 
@@ -85,6 +85,8 @@ class Shaking:
             return self._answered(lambda: self._value(t, number), "in numbers of more digits", "give floats")
         if arithmetic is None:
             (ax, ay), waves = self.floats
+            if not isfinite(t):
+                return nan, nan
             for _, turns, low, cx, sx, cy, sy in waves.tolist():
                 s, c = revolved(turns, low, float(t), 0.0)
                 ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)

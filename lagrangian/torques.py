@@ -12,7 +12,11 @@ from .angles import difference, product
 from .machine import inlined
 from .stepper import total
 
-__all__ = ["exact_torques", "joint_torques", "joint_torques_of_each", "joint_torques_of_many"]
+__all__ = ["exact_torques", "joint_torques", "joint_torques_of_each", "joint_torques_of_many", "without_limit"]
+
+# Rods without mass are 1e-90 of the heaviest, or 1e-400 with more digits; joints are folded to 1e-16, or to their
+# digits: answers reach 1e32 or 1e90, ordinary ones being 1, or twice the digits or 1e400.
+NO_LIMIT, NO_EXACT_LIMIT = 1e55, 1e280
 
 
 def exact_torques(theta: Any, omega: Any, damping: Any, springs: Any) -> Any:
@@ -68,3 +72,13 @@ def joint_torques_of_each(theta: Any, omega: Any, damping: Any, springs: Any, ta
     for j in range(theta.shape[0]):
         joint_torques(theta[j], omega[j], None if damping is None else damping[j],
                       None if springs is None else springs[j], tau[j])
+
+
+def without_limit(mass: float, length: float, weight: float, omega: Any, torques: Any, found: Any) -> Any:
+    """Whether a torque turns folded rods without mass, so that their ``theta''`` has no limit; for every chain.
+
+    Shapes: omega, torques and found, ``theta''``, (n,) or (n, chains).  ``mass`` and ``length`` are those of the
+    heaviest and of the shortest rod, ``weight`` the acceleration of gravity and support.
+    """
+    ordinary = abs(torques).max(axis=0) / (mass * length**2) + abs(weight) / length + (omega * omega).max(axis=0)
+    return abs(found).max(axis=0) > (NO_EXACT_LIMIT if found.dtype == object else NO_LIMIT) * ordinary

@@ -321,6 +321,29 @@ def test_rods_without_mass_that_fold_back_are_the_limit_too(m):
     assert error(Ensemble([m], ones, ones, ones).acceleration(0, [theta], [omega])[0], exact) < 4e-15
 
 
+@pytest.mark.parametrize("theta", [[0.3, 0.3, 0.3 + np.pi, 0.3 + np.pi], [0.3 + np.pi, 0.3, 0.3 + np.pi, 0.3]])
+def test_a_torque_on_rods_without_mass_that_fold_back_is_answered_or_refused(theta):
+    """Where angles are folded exactly there is no limit; where pi as a float leaves 1e-16 there is one, at 1e31."""
+    m, ones, springs = np.array([0.0, 1, 1, 1]), np.ones(4), np.array([0, 0, 1.0, 1.5])
+    theta, omega = np.array(theta), np.array([0.0, 0.3, 0.2, 0.6])
+    chain = CompiledChain(m, ones, ones, ones, springs=springs)
+    ensemble = Ensemble([ones, m], ones, ones, ones, springs=springs)
+    exact, lighter = (dense(np.where(m == 0, light, m), ones, ones, ones, 9.81, theta, omega, springs=springs)
+                      for light in (1e-110, 1e-120))
+    if abs(float(exact[0])) < 1e60:
+        assert error([float(x) for x in lighter], exact) < 1e-15
+        assert error(chain.acceleration(0, theta, omega), exact) < 4e-15
+        assert error(ensemble.acceleration(0, [theta] * 2, [omega] * 2)[1], exact) < 4e-15
+        return
+    assert abs(float(lighter[0])) > 1e110
+    for number in (float, mpmath.mpf, flint.arb):
+        state = [np.array([number(x) for x in part]) for part in (theta, omega)]
+        with pytest.raises(QuantityError, match="no limit at t = 0.*without mass lie folded"):
+            chain.acceleration(0, *state)
+        with pytest.raises(QuantityError, match="no limit at t = 0"):
+            ensemble.acceleration(0, *([x, x] for x in state))
+
+
 def test_a_massless_rod_with_a_spring_has_no_answer():
     """It would turn infinitely fast, and the error says so."""
     with pytest.raises(SceneError, match="rod 1 has no mass, and the springs"):

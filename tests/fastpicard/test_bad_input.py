@@ -490,6 +490,15 @@ def test_what_is_not_finite_is_refused(number):
             ask()
 
 
+@pytest.mark.parametrize("value", [sympy.besselj(0, 1), sympy.Integral(exp(-t**2), (t, 0, oo))])
+def test_a_value_that_sympy_cannot_judge_is_asked_for_in_digits(value):
+    """Finite as it is; what the message says does."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - cos(t), 0]]), t, 6)
+    with pytest.raises(BadInputError, match="SymPy does not tell whether .*Give its digits, as in .*evalf"):
+        F.evaluate({a: value})
+    assert F.trace_at({a: value.evalf(50)}, digits=20) != 2
+
+
 def test_an_integral_that_is_not_finite_is_refused():
     """x' = 1/t from t = 0; and x' = x oo, where only x makes nan of it."""
     with pytest.raises(BadInputError, match=r"from 0 to t must be finite, but it is log\(t\) \+ oo"):

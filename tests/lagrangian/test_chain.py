@@ -380,6 +380,15 @@ def test_a_time_is_a_number(time):
         CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]).acceleration(time, np.ones(2), np.ones(2))
 
 
+@pytest.mark.parametrize("time", [float("inf"), float("nan"), np.float64("-inf")])
+def test_a_time_is_finite_where_the_support_moves(time):
+    """Named, and without a warning, for one chain and many."""
+    chain = Scene([Rod.uniform(1, 1)] * 2, Support(eta=cos(7 * t) / 10), gravity=10, t=t).compile()
+    for state in (np.ones(2), np.ones((2, 3))):
+        with pytest.raises(QuantityError, match="t holds -?(inf|nan), which is not finite"):
+            chain.acceleration(time, state, state)
+
+
 def test_numbers_of_all_kinds_stand_side_by_side():
     """The most precise kind decides, also that of the time, and many chains keep it as one does."""
     chain = Scene([Rod.uniform(1, 1)] * 2, Support(eta=cos(7 * t) / 10), gravity=10, t=t).compile()
@@ -394,6 +403,7 @@ def test_numbers_of_all_kinds_stand_side_by_side():
         assert abs(np.array([float(x) for x in found]) - plain).max() < 4e-15 * abs(plain).max()
     states = np.array([[mpmath.mpf(1), mpmath.mpf(2)], [third, third]])
     many = chain.acceleration(third, states, states)
+    assert (many == chain.acceleration(third, list(states), list(states))).all()
     assert many.dtype == object and list(many[:, 1]) == list(chain.acceleration(third, states[:, 1], states[:, 1]))
 
 
