@@ -202,6 +202,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 per = 1.0 / l
             else:
                 own = rods[first // LANES, n - 1 - k]
+                fetch(rods[first // LANES], n - 1 - k - AHEAD, LENGTH, LENGTH + LANES, GROUP)
             for j in range(width):
                 if rods.ndim == 3:
                     l = own[LENGTH + j]
