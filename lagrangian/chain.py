@@ -42,7 +42,7 @@ from .recursion import accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
 from .single import single_bobs, single_rods
-from .states import exact_states, float_states, float_time, is_plain, why_no_answer
+from .states import exact_states, float_states, float_time, is_plain, shown, why_no_answer
 from .torques import exact_torques, joint_torques, joint_torques_of_many, without_limit
 
 __all__ = ["CompiledChain"]
@@ -250,7 +250,7 @@ class CompiledChain:
         """Raise QuantityError where ``theta''`` has no limit, see :func:`lagrangian.torques.without_limit`."""
         m, l = self.rods[:, :2].T.tolist()
         if np.any(without_limit(max(m), min(l), max(map(abs, self.steady_pull)), omega, torques, found)):
-            raise QuantityError(f"theta'' has no limit at t = {t}, theta = {theta.tolist()}: rods without mass lie "
+            raise QuantityError(f"theta'' has no limit at t = {t}, theta = {shown(theta)}: rods without mass lie "
                                 f"folded in one line, and the torques of joints beyond turn them infinitely fast.  "
                                 f"Give them a mass, or other angles.")
 
@@ -358,8 +358,9 @@ class CompiledChain:
             if self._may_lack_limit:
                 self.check_limit(t, theta[at], omega[at], self.torques(theta[at], omega[at]), out[at])
         if not all(map(arithmetic.answers, out.flat)):
-            raise QuantityError(f"theta'' is not finite at t = {t}, theta = {theta.tolist()}, omega = "
-                                f"{omega.tolist()}: give finite numbers, or balls that are narrower.")
+            raise QuantityError(f"theta'' is not finite at t = {t}, theta = {shown(theta)}, omega = "
+                                f"{shown(omega)}: give finite numbers, or balls that are narrower, with more bits for "
+                                f"them (flint.ctx).")
         return out
 
     def _in_arithmetic(self, arithmetic: Arithmetic, t: Any, theta: Any, omega: Any, constants: Any = None,

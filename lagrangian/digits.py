@@ -1,8 +1,9 @@
 r"""Taylor steps with as many digits as asked: the recursion of :mod:`lagrangian.taylor` on python-flint numbers.
 
 Balls are used for their speed and precision, not for proof: after every step the radii are dropped, so that
-errors do not compound as if they were always at their worst.  Orders and steps are chosen as in float64:
-``p = 1 + 1.16 digits`` balances the work of a step, O(n p**2), against its length.
+errors do not compound as if they were always at their worst.  Within a step they grow, by a bit for every rod or two:
+where that is more than there are, the motion begins again with more of them.  Orders and steps are chosen as in
+float64: ``p = 1 + 1.16 digits`` balances the work of a step, O(n p**2), against its length.
 
 Motions with digits in several threads wait for each other (:mod:`lagrangian.precision`).
 """
@@ -32,6 +33,15 @@ __all__ = ["DigitRun", "Piece", "Steps", "best_order", "bits_for", "integrate_di
            "numbers", "whole_turns"]
 
 GUARD = 30  # bits beyond those asked for
+MORE = 128  # if they are too few, and then twice as many, up to 4096, or 16 for every rod
+
+
+class TooFewBits(ArithmeticError):
+    """The balls of a Taylor series have fewer digits than asked for, at a start."""
+
+    def __init__(self, start: float) -> None:
+        super().__init__(start)
+        self.start = start
 
 
 def _convolved(C: Any, S: Any, w: Any, Bu: Any, Bn: Any, count: int, none: Any) -> Any:
@@ -95,10 +105,21 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
     step.  Truncation is below ``10**-digits`` a step, and in balls rounding too.  Raises DriveError where the support's
     motion has no Taylor series, QuantityError where a step shrinks to nothing.
     """
-    context = Context(digits)
     with working(64):
-        large = max(magnitude(Balls().number(x)) for x in (*theta, *times))
-    with working(bits_for(digits) + large):
+        bits = bits_for(digits) + max(magnitude(Balls().number(x)) for x in (*theta, *times))
+    for more in (0, *(MORE << k for k in range(6 + (len(chain) // 256).bit_length()))):
+        try:
+            return _integrated(bits + more, chain, theta, omega, times, digits, order, progress, steps, keep)
+        except TooFewBits as refused:
+            reached = refused.start
+    raise QuantityError(f"the motion cannot be followed beyond t = {reached:.6g}: with {bits + more} bits theta'' "
+                        f"has fewer digits than asked for.  End before it, or give masses to rods without.")
+
+
+def _integrated(bits: int, chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None,
+                progress: Callable[[float], None] | None, steps: Callable[..., Steps] | None, keep: bool) -> DigitRun:
+    context = Context(digits)
+    with working(bits):
         state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
         motion = (steps or Steps)(chain, state, digits, order)
         motion.pieces = [] if keep else None
@@ -143,7 +164,7 @@ class Steps:
     def __init__(self, chain: CompiledChain, state: list[Any], digits: int, order: int | None) -> None:
         self.chain, self.arithmetic, self.count = chain, Balls(), 0
         self.order = order or best_order(digits)
-        self.tolerance = 10.0 ** -(digits + 1)
+        self.digits = digits
         self.rods = chain.rods_in(self.arithmetic)
         self.joints = chain.joints_in(self.arithmetic)
         self.theta, self.omega = (self.arithmetic.array(part) for part in state)
@@ -180,7 +201,15 @@ class Steps:
         series = self.arithmetic.zeros(*series_shape(n, order))
         factor(self.rods, s, c, one, factors)
         _expand(factors, *self.joints, delta, self.omega, *self.pull, order, one, held, series)
+        self._check(series[:, 2, order - 1])
         return series
+
+    def _check(self, second: Any) -> None:
+        """Raise TooFewBits where ``theta''``, in balls, have fewer digits than asked for beside what makes them up."""
+        weight = max(abs(part[0]) for part in self.pull) / min(self.rods[:, 1])
+        scale = max(abs(x) for x in second) + max(abs(x) for x in self.omega) ** 2 + weight
+        if not max(x.rad() for x in second) * flint.arb(10) ** (self.digits + 1) <= scale.mid():
+            raise TooFewBits(float(self.start))
 
     def magnitudes(self) -> list[float]:
         """Logarithms of the largest coefficient of any rate, for the last four orders, the last first."""
@@ -224,7 +253,7 @@ class Steps:
     def _length(self, end: Any) -> Any:
         remaining = float(end - self.start)
         logs = [-size / (self.order + 1 - i) for i, size in enumerate(self.magnitudes()) if size > -inf]
-        h = exp(min(logs) + log(self.tolerance) / (self.order + 1)) if logs else 2 * abs(remaining) + 1
+        h = exp(min(logs) - log(10) * (self.digits + 1) / (self.order + 1)) if logs else 2 * abs(remaining) + 1
         h = min(h, 2 * abs(remaining) + 1e-29 * abs(float(self.start)) + 1e-300,
                 FARTHEST / max(1e-300, *(abs(float(x)) for x in self.omega)))
         crawls = self.chain.support.function is not None and self.pace.crawls(float(self.start), float(end))

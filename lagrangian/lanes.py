@@ -163,7 +163,7 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                     I, It = Ic + mH * H, Ic + mG * G
                 Puu, Pun, Pnn, Delta = held[PUU + j], held[PUN + j], held[PNN + j], held[DELTA + j]
                 qn, rate = held[QN + j], o[RATE + j]
-                r, Er, det, ends = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
+                r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
                 f0, f1, f2, f3 = force(m, l, I, Ic, J, It, mH, mG, Puu, Pun, Pnn, Delta, r, Er, held[QU + j], qn,
                                        held[KU + j], held[KN + j], rate * rate)
                 o[W0 + j] = J * r
@@ -182,14 +182,14 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 o[VAR_W1 + j] = llr * llr * held[VAR_PUN + j]
                 s, c = o[SIN + j], o[COS + j]
                 b = rate * rate * (mH + l * Er)
-                Puu, Pnn, u, v = turned_inertia(s, c, ends)
-                held[VAR_PUN + j], held[VAR_QN + j] = spread_within(u, v, s, f0, b)
+                held[VAR_PUN + j], held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
                 if tau is not None:
                     w, g, h = t * lr, t * g0, t * g1
                     o[VAR_W2 + j] += w * w
                     held[VAR_QN + j] += g * g * s * s + h * h * c * c
+                Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
                 f0, f1, f2, f3 = turned_force(s, c, f0, f1, f2, f3)
-                held[PUU + j], held[PUN + j], held[PNN + j], held[DELTA + j] = Puu, u - v, Pnn, det
+                held[PUU + j], held[PUN + j], held[PNN + j], held[DELTA + j] = Puu, Pun, Pnn, det
                 held[QU + j], held[QN + j] = f0, f1
                 held[KU + j], held[KN + j] = f2, f3
         for j in range(width):

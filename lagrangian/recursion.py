@@ -68,25 +68,22 @@ DOUBT = 7.0  # units of 2**-53, normwise: 4e-15 is 36
 
 @inlined
 def inertia(m: Any, l: Any, I: Any, Ic: Any, J: Any, It: Any, Puu: Any, Pun: Any, Pnn: Any, Delta: Any) -> Any:
-    """``1/D, E/D, Delta'``, and ``1/D, 1/N, N = D Puu', D Pun', Delta'/Puu'``, with ``E = I Puu + l**2 Delta``."""
+    """``1/D, E/D, Puu', Pun'/Puu', Delta'/Puu', Delta'`` at the near end, with ``E = I Puu + l**2 Delta``."""
     D = I + l * l * Pnn
     E = I * Puu + l * l * Delta
     N = m * D + E
-    r, R = 1 / D, 1 / N
+    r = 1 / D
     det = m * Ic * (m + Puu) + It * (m * Pnn + Delta)
-    return r, E * r, det * r, (r, R, N, J * Pun, det * R)
+    R = 1 / N
+    return r, E * r, N * r, J * Pun * R, det * R, det * r
 
 
 @inlined
-def turned_inertia(s: Any, c: Any, ends: Any) -> Any:
-    """``Puu, Pnn`` in axes turned back by delta, and the terms of Pun, their difference; of what :func:`inertia` gives.
-
-    ``N v`` is turned, not v: a division less stands between one rod and the next, which wait for each other.
-    """
-    r, R, N, x, y = ends
-    f, g = N * c - x * s, N * s + x * c
-    p, q, a = f * R, g * R, f * r
-    return a * p + y * (s * s), g * r * q + y * (c * c), a * q, y * s * c
+def turned_inertia(s: Any, c: Any, a: Any, x: Any, y: Any) -> Any:
+    """``Puu, Pun, Pnn`` of ``a v v^T + y e e^T``, ``v = (1, x)``, in axes turned back by delta."""
+    p = c - x * s
+    q = s + x * c
+    return a * p * p + y * s * s, a * p * q - y * s * c, a * q * q + y * c * c
 
 
 @inlined
@@ -114,9 +111,10 @@ def turned_force(s: Any, c: Any, qu: Any, qn: Any, ku: Any, kn: Any) -> Any:
 
 
 @inlined
-def spread_within(u: Any, v: Any, s: Any, f0: Any, b: Any) -> Any:
-    """The variances of ``Pun = u - v`` and, beside its own size, of ``qn``, after the turn; ``f0 = qu' = A - b``."""
-    return u * u + v * v, (f0 * f0 + b * b) * (s * s)
+def spread_within(s: Any, c: Any, a: Any, x: Any, y: Any, f0: Any, b: Any) -> Any:
+    """The variances of ``Pun`` and, beside its own size, of ``qn``, after the turn; ``f0 = qu' = A - b``."""
+    u, v, w = a * (c - x * s) * (s + x * c), y * s * c, s * s
+    return u * u + v * v, (f0 * f0 + b * b) * w
 
 
 @inlined
@@ -151,7 +149,7 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
         k = n - 1 - i
         m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
         J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
-        r, Er, det, ends = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
+        r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
         work[k, 0] = J * r
         work[k, 1] = l * l * Pun * r
         work[k, 3] = (mH + l * Pnn) * r
@@ -163,16 +161,16 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
             work[k, 2] = (l * qn - t) * l * r
             g0, g1, g2, g3 = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
             f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
-        Puu, Pnn, u, v = turned_inertia(s[k], c[k], ends)
-        Pun, Delta = u - v, det
         if doubt is not None:
             ll = l * l * r
             doubt[0, k], doubt[1, k] = ll * ll * Vq + work[k, 2] * work[k, 2], ll * ll * Vp
-            Vp, Vq = spread_within(u, v, s[k], f0, z[k] * (mH + l * Er))
+            Vp, Vq = spread_within(s[k], c[k], a, x, y, f0, z[k] * (mH + l * Er))
             if tau is not None:
                 w, g, h = t * l * r, t * g0, t * g1
                 doubt[0, k] += w * w
                 Vq = Vq + (g * g * s[k] * s[k] + h * h * c[k] * c[k])
+        Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
+        Delta = det
         qu, qn, ku, kn = turned_force(s[k], c[k], f0, f1, f2, f3)
     tu, tn = ay, ax
     uu = un = nn = 0 * z[0]

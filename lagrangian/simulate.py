@@ -42,6 +42,7 @@ __all__ = ["simulate"]
 
 METHODS = ("taylor", *SCIPY_METHODS, "heyoka", "linear")
 SAFETY = 6.0
+TINY = float(np.finfo(float).tiny)  # beyond so many digits the error, a float, is stated as this
 FLOAT_LIMIT = 1e-14  # accuracies below it need more digits than float64 has
 
 
@@ -235,7 +236,7 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, given
         context = run.angle.flat[0].context
         turned = (run.turns - finer.turns) * (2 * context.pi)
         apart = abs(run.angle - np.frompyfunc(context.convert, 1, 1)(finer.angle) + turned)
-        error = SAFETY * np.maximum.accumulate(apart.max(axis=1).astype(float)) + 10.0**-used
+        error = SAFETY * np.maximum.accumulate(apart.max(axis=1).astype(float)) + max(10.0**-used, TINY)
         if digits is not None or error[-1] <= accuracy:
             break
         used += 2 + ceil(log10(error[-1] / accuracy))
@@ -284,7 +285,7 @@ def _accuracy(asked: Any) -> float:
         raise QuantityError(f"an accuracy is a positive number, and this one is {exact}: give the error in rad that "
                             f"may remain.")
     found = float(exact)
-    if found < np.finfo(float).tiny:
+    if found < TINY:
         power = int(floor(log(exact, 10)))
         raise QuantityError(f"an accuracy is a float, and this one, 1e{power}, is below all of them: say how many "
                             f"digits to compute with, as in digits={5 - power}.")

@@ -12,7 +12,8 @@ import numpy as np
 from .errors import SceneError
 from .quantities import real_number, refuse_mask, refuse_text, to_float
 
-__all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "why_no_answer"]
+__all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "shown",
+           "why_no_answer"]
 
 FLOAT64 = np.dtype(np.float64)
 PLAIN_TIMES = (float, int, np.float64)
@@ -68,6 +69,12 @@ def exact_states(theta: Any, omega: Any, n: int) -> tuple[Any, Any]:
     _check_same(theta, omega)
     _check_shape(theta, "theta", n)
     return theta, omega
+
+
+def shown(values: Any) -> str:
+    """Numbers in a message: all of a few, or the first and how many there are."""
+    few = ", ".join(map(str, values.flat[:6]))
+    return f"[{few}]" if values.size <= 6 else f"[{few}, ...], {values.size} in all"
 
 
 def why_no_answer(t: Any, theta: Any, omega: Any) -> str:

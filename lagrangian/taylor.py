@@ -52,7 +52,7 @@ def factor(rods: Any, s: Any, c: Any, one: Any, factors: Any) -> None:
         m, l, I, Ic = rods[k, 0], rods[k, 1], rods[k, 2], rods[k, 3]
         J, It, mH, mG = rods[k, 4], rods[k, 5], rods[k, 6], rods[k, 7]
         f = factors[k]
-        r, Er, det, ends = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
+        r, Er, a, x, y, det = inertia(m, l, I, Ic, J, It, Puu, Pun, Pnn, Delta)
         ll = l * l
         f[0], f[1], f[2] = I * r, m * Ic * r, ll * r  # of qu in qu', kappa_u'; of kappa_u in qu'
         f[3], f[4], f[5] = It * r, J * r, m * J * r  # of kappa_u in kappa_u'; of qn in qn', kappa_n'
@@ -61,8 +61,8 @@ def factor(rods: Any, s: Any, c: Any, one: Any, factors: Any) -> None:
         f[10], f[11], f[12], f[13] = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
         f[14], f[15], f[16], f[17] = l * r, Puu, Pun, r
         f[18], f[19], f[20], f[21], f[22] = s[k], c[k], l, I, mH
-        Puu, Pnn, u, v = turned_inertia(s[k], c[k], ends)
-        Pun, Delta = u - v, det
+        Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
+        Delta = det
 
 
 @reordered
