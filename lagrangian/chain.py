@@ -41,15 +41,14 @@ from .quantities import quantity, real_number, to_float
 from .recursion import accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
-from .single import single_bobs, single_rods
+from .single import MODELS, ordinary
 from .states import exact_states, float_states, float_time, is_plain, shown, why_no_answer
 from .torques import exact_torques, joint_torques, joint_torques_of_many, without_limit
 
 __all__ = ["CompiledChain"]
 
-MODELS = ("bobs", "rods")
 LONG = 10_000
-UNPICKLED = ("_kept", "_single", "_fine", "_steady_fine")  # found again
+UNPICKLED = ("_kept", "_single", "_ordinary", "_fine", "_steady_fine")  # found again
 LONG_EVEN = 100  # even rods, from which on they are asked for their doubt only if straight somewhere
 
 
@@ -101,6 +100,7 @@ class CompiledChain:
         columns = [column(values, name) for values, name in zip((mass, length, center, gyration), NAMES, strict=True)]
         self._columns = checked(columns)
         self._count = len(self._columns[0])
+        self._shape = (self._count,)
         self._kept = local()
         self.gravity = real_number(gravity, "gravity")
         self.support: Shaking = shaking_of(support_acceleration)
@@ -223,7 +223,14 @@ class CompiledChain:
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """
-        if not (is_plain(t, theta, omega) and 0 < theta.ndim < 3 and len(theta) == self._count):
+        plain = is_plain(t, theta, omega)
+        tried = plain and theta.shape == self._shape and self._ordinary
+        if tried:  # one call of machine code is all
+            free, constants, pull = tried
+            out = np.empty(self._shape)
+            if free(constants, theta, omega, *pull, np.empty(9 * self._count), out):
+                return out
+        if not (plain and 0 < theta.ndim < 3 and len(theta) == self._count):
             arithmetic = arithmetic_of(t, theta, omega)
             if arithmetic is not None:
                 return self._exactly(arithmetic, t, theta, omega)
@@ -231,7 +238,10 @@ class CompiledChain:
             theta, omega = float_states(theta, omega, self._count)
         ax, ay = self.steady_pull if self._steady else map(float, self.pull(t))
         out = np.empty(theta.shape)
-        done, doubtful = (self._many if theta.ndim == 2 else self._one)(theta, omega, ax, ay, out)
+        if theta.ndim == 2:
+            done, doubtful = self._many(theta, omega, ax, ay, out)
+        else:
+            done, doubtful = self._one(theta, omega, ax, ay, out, *((self._large(theta), True) if tried else ()))
         if not done:
             raise QuantityError(why_no_answer(t, theta, omega))
         if self._may_lack_limit:
@@ -309,15 +319,27 @@ class CompiledChain:
         done, doubtful = single(constants, theta, omega, tau, ax, ay, large, unasked, space, out)
         if unasked and doubtful:
             return self._one(theta, omega, ax, ay, out, large, asked=True)
-        if done or large or not abs(theta).max() >= 0.5 * LARGEST:
+        if done or large or not self._large(theta):
             return done, doubtful
         return self._one(theta, omega, ax, ay, out, True, asked)
+
+    @staticmethod
+    def _large(theta: Any) -> bool | None:
+        """True where an angle is too large for the quicker sines, else None."""
+        return bool(abs(theta).max() >= 0.5 * LARGEST) or None
+
+    @cached_property
+    def _ordinary(self) -> tuple[Any, Any, Any] | None:
+        """The machine code, constants and pull of most calls, for one chain that nothing shakes, damps or bends."""
+        if not has_numba() or self.has_torques or not self._steady or self._count >= LONG:
+            return None
+        return machine(ordinary[self.model, self._unasked]), self._single[1], self.steady_pull
 
     @cached_property
     def _single(self) -> tuple[Any, Any]:
         """The machine code for one chain, None without numba, and the constants that it takes."""
-        function, constants = (single_bobs, self.bobs) if self.model == "bobs" else (single_rods, self.rods)
-        return machine(function) if has_numba() else None, constants
+        constants = self.bobs if self.model == "bobs" else self.rods
+        return machine(MODELS[self.model]) if has_numba() else None, constants
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""

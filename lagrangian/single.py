@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines
-from .machine import reordered
+from .machine import rebound, reordered
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 
-__all__ = ["single_bobs", "single_rods"]
+__all__ = ["MODELS", "ordinary", "single_bobs", "single_rods"]
 
 BENT = 0.01  # long even chains whose joints are so bent are in no doubt (benchmarks/hard_chains.py bent)
 
@@ -125,3 +125,17 @@ def single_bobs(bobs: Any, theta: Any, omega: Any, tau: None, ax: float, ay: flo
         accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
         done, doubtful = finite(out), False
     return done and right, doubtful
+
+
+MODELS = {"bobs": single_bobs, "rods": single_rods}
+single, unasked = single_rods, None  # of the function below, for each of which there is a copy
+
+
+def free(constants: Any, theta: Any, omega: Any, ax: float, ay: float, space: Any, out: Any) -> bool:
+    """Write ``theta''`` of a chain without torques; whether it is finite, right with these sines, and in no doubt."""
+    done, doubtful = single(constants, theta, omega, None, ax, ay, None, unasked, space, out)
+    return done and not doubtful
+
+
+ordinary = {(model, spared): rebound(free, single=function, unasked=spared)
+            for model, function in MODELS.items() for spared in (None, True)}
