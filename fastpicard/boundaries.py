@@ -15,6 +15,7 @@ of odd solutions (module ``halfway``), whose zeros are simple where those of p a
 
 from __future__ import annotations
 
+import numbers
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -23,6 +24,7 @@ from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
+from fastpicard.charted import axis_of, end_of_axis, mapping_of
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
@@ -72,6 +74,8 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
     >>> boundaries(F)[2].root(a, (-0.7, 0.2), {b: 1.5}).value
     -0.6963449249569149
     """
+    if not isinstance(F, FloquetMatrix):
+        raise BadTypeError(f"boundaries are those of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
     size, signs = F.shape[0], reversal(F.P)
     if size % 2 or not pairs(F.P)[0]:
         raise BadInputError("boundaries need multipliers in pairs lambda, 1/lambda, and those of this P do not come in "
@@ -226,7 +230,7 @@ class Boundary:
                                 "Choose one of these.")
         if not isinstance(bracket, tuple | list) or len(bracket) != 2:
             raise BadTypeError(f"the bracket must be two numbers (lo, hi), but it is {bracket!r}.  Give both ends.")
-        others = {s: v for s, v in (fixed or {}).items() if s != x}
+        others = {s: v for s, v in mapping_of(fixed).items() if s != x}
         exact = exact_values({**others, x: 0}, self.symbols, self._F.t)
         with working(dps_to_prec(wanted) + 64):
             value, count = zero(lambda here: self._dual({**exact, x: here}, (x,)), bracket, arb(10) ** -wanted)
@@ -277,13 +281,24 @@ class Boundary:
 
         Raises
         ------
-        BadInputError
-            if no boundary is found near ``start``.
+        BadInputError, BadTypeError
+            if no boundary is found near ``start``, or that is not in the rectangle; if axes, ``fixed`` or ``step`` are
+            not as described.
         """
-        exact = exact_values({**(fixed or {}), x[0]: 0, y[0]: 0}, self.symbols, self._F.t)
-        names, box = (x[0], y[0]), [(float(lo), float(hi) - float(lo)) for _, lo, hi in (x, y)]
-        found = curve(lambda *place: self._dual({**exact, **dict(zip(names, place, strict=True))}, names), box,
-                      (float(start[0]), float(start[1])), step)
+        axes = axis_of(x, "x"), axis_of(y, "y")
+        names, box = tuple(axis.symbol for axis in axes), [(axis.lo, axis.hi - axis.lo) for axis in axes]
+        exact = exact_values({**mapping_of(fixed), names[0]: 0, names[1]: 0}, self.symbols, self._F.t)
+        if not isinstance(start, tuple | list) or len(start) != 2:
+            raise BadTypeError(f"start must be a pair of numbers (x, y), but it is {start!r}.  Give a point near the "
+                               "curve.")
+        place = tuple(end_of_axis(z, "a coordinate of start") for z in start)
+        if not all(axis.lo <= z <= axis.hi for axis, z in zip(axes, place, strict=True)):
+            raise BadInputError(f"start must be in the rectangle of x and y, but it is {start}.  Give a point there.")
+        if isinstance(step, bool) or not isinstance(step, numbers.Real) or not 1e-6 <= step <= 1:
+            raise BadInputError(f"step must be a part of the rectangle's sides, from 1e-6 to 1, but it is {step!r}.  "
+                                "Use step=0.02.")
+        found = curve(lambda *place: self._dual({**exact, **dict(zip(names, place, strict=True))}, names), box, place,
+                      float(step))
         if found is None:
             raise BadInputError(f"a boundary is followed from a point near it, but none was found near {start}.  Start "
                                 "from a root().")

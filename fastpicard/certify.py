@@ -19,7 +19,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from flint import arb
 from sympy import Symbol
 
 from fastpicard import plotting
@@ -27,7 +26,7 @@ from fastpicard.charted import Axis, Charted, images, read_chart
 from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Values, exact_number, numpy, upper_float
+from fastpicard.evaluate import Values, ball, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
 from fastpicard.local import BITS, LocalMap, amplitudes, common_bound, convex, order_for, polynomials
@@ -79,7 +78,10 @@ class CertifiedChart:
         return (self.cells[:, 1] - self.cells[:, 0]) * (self.cells[:, 3] - self.cells[:, 2])
 
     def fraction(self, verdict: Verdict) -> float:
-        """The part of the chart's area with this verdict."""
+        """The part of the chart's area with this verdict; raises BadTypeError for what is none."""
+        if not isinstance(verdict, Verdict):
+            raise BadTypeError(f"the area is that of a verdict, but this is {verdict!r}.  Use Verdict.STABLE, "
+                               "Verdict.UNSTABLE or Verdict.UNDECIDED.")
         whole = (self.x.hi - self.x.lo) * (self.y.hi - self.y.lo)
         return float(self.areas[self.codes == CODES[verdict.name]].sum() / whole)
 
@@ -96,7 +98,7 @@ class CertifiedChart:
         BadInputError
             if the point is outside the chart.
         """
-        balls = [_ball(exact_number(z, "a coordinate")) for z in (x, y)]
+        balls = [ball(exact_number(z, "a coordinate")) for z in (x, y)]
         (px, py), (qx, qy) = [-upper_float(-z) for z in balls], [upper_float(z) for z in balls]
         c = self.cells
         inside = (c[:, 0] <= qx) & (px <= c[:, 1]) & (c[:, 2] <= qy) & (py <= c[:, 3])
@@ -150,10 +152,6 @@ class CertifiedChart:
         return (f"<CertifiedChart of {self.x.symbol} in [{self.x.lo:g}, {self.x.hi:g}], {self.y.symbol} in "
                 f"[{self.y.lo:g}, {self.y.hi:g}]: {parts}; {len(self.codes)} cells, order {self.order}, "
                 f"{self.seconds:.1f} s>")
-
-
-def _ball(number: Any) -> Any:
-    return number if isinstance(number, arb) else arb(number)
 
 
 def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any], seconds: float = 10,

@@ -16,10 +16,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd
+from sys import float_info
 from typing import Any
 
 import sympy
-from flint import arb, ctx, fmpz_poly
+from flint import arb, ctx, fmpq, fmpz_poly
 from sympy import CRootOf, Dummy, Expr, Symbol
 
 from fastpicard.collapsed import Collapsed
@@ -186,12 +187,14 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     """
     if not isinstance(F, FloquetMatrix):
         raise BadTypeError(f"a chart is drawn of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
-    first, second = _axis(x, "x"), _axis(y, "y")
+    first, second = axis_of(x, "x"), axis_of(y, "y")
     if first.symbol == second.symbol:
         raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two.")
-    numbers = {s: _exact_expression(value, s) for s, value in (fixed or {}).items()}
+    numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
     decoupled = modes is not None
     given = list(modes) if decoupled else [{s: s for s in (first.symbol, second.symbol)}]
+    if not given:
+        raise BadInputError("a chart with modes is one of several equations, but modes is empty.  Give one or more.")
     for s in (first.symbol, second.symbol, *(s for mode in given if isinstance(mode, Mapping) for s in mode)):
         if s in numbers:
             raise BadInputError(f"a parameter has one value, but {s} is fixed at {numbers[s]} and is also on an axis "
@@ -232,18 +235,36 @@ def _exact_expression(value: Any, symbol: Symbol) -> Expr:
     return sympy.Rational(int(number.p), int(number.q))
 
 
-def _axis(given: Any, name: str) -> Axis:
+def mapping_of(fixed: Values | None) -> Values:
+    """The numbers that are fixed, none for None; raises BadTypeError for what is no mapping."""
+    if fixed is not None and not isinstance(fixed, Mapping):
+        raise BadTypeError(f"fixed must map Symbols to numbers, but it is {fixed!r}.  Use fixed={{c: 1}}.")
+    return fixed or {}
+
+
+def axis_of(given: Any, name: str) -> Axis:
+    """An axis from ``(Symbol, lo, hi)``; raises BadTypeError, BadInputError."""
     if not isinstance(given, tuple | list) or len(given) != 3 or not isinstance(given[0], Symbol):
         raise BadTypeError(f"{name} must be (Symbol, lo, hi), but it is {given!r}.  Use {name}=(a, -1, 5), say.")
-    symbol, lo, hi = given[0], *(float(_float(end, f"an end of {given[0]}")) for end in given[1:])
+    symbol, lo, hi = given[0], *(end_of_axis(end, f"an end of {given[0]}") for end in given[1:])
     if not lo < hi:
         raise BadInputError(f"{name} must be an interval with lo < hi, but it is {given!r}.  Exchange the ends.")
     return Axis(symbol, lo, hi)
 
 
-def _float(value: Any, what: str) -> float:
+def end_of_axis(value: Any, what: str) -> float:
+    """The float nearest to one number; raises BadTypeError for a ball, BadInputError for what is no float."""
     number = exact_number(value, what)
-    return float(number.p) / float(number.q) if hasattr(number, "p") else float(number)
+    if isinstance(number, arb):
+        raise BadTypeError(f"{what} must be one number, but it is the ball {number}.  Give its ends.")
+    try:
+        found = int(number.p) / int(number.q) if isinstance(number, fmpq) else float(number)
+    except OverflowError:
+        found = math.inf
+    if not math.isfinite(found) or 0 < abs(found) < float_info.min:
+        raise BadInputError(f"{what} must be a float, but {value} is beyond them.  Measure the parameter in other "
+                            "units.")
+    return found
 
 
 def _member(mode: Mapping[Symbol, Any], numbers: Mapping[Symbol, Expr], x: Symbol, y: Symbol) -> Member:

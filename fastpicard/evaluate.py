@@ -17,6 +17,7 @@ import math
 import numbers
 import operator
 from collections.abc import Callable, Iterable, Mapping
+from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
@@ -66,7 +67,10 @@ def exact_number(value: Any, what: str) -> Any:
         return _sympy_number(value, what)
     if isinstance(value, mpmath.mpf) and not isinstance(value, mpmath.mp.constant):
         return rational(sympy.Float(_finite(value, mpmath.isfinite(value), what), precision=max(value._mpf_[3], 53)))
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(value, mpmath.mp.constant):
+    if isinstance(value, Decimal):
+        return fmpq(*map(int, _finite(value, value.is_finite(), what).as_integer_ratio()))
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(
+            value, mpmath.mp.constant | type(mpmath.iv.one)):
         raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  "
                            "Give an int, Fraction, SymPy number, mpf, float or arb; text is never evaluated.")
     if isinstance(value, numbers.Rational):  # of any size, floats are not
@@ -85,7 +89,7 @@ def _sympy_number(value: Expr, what: str) -> Any:
         return rational(_finite(value, value.is_finite is True, what))
     if value.free_symbols or not value.is_number or value.is_extended_real is False:
         raise BadTypeError(f"{what} must be a real number, but it is the expression {value}.  Substitute real numbers.")
-    if value.is_finite is False:
+    if value.is_finite is False or value is sympy.nan:
         raise BadInputError(f"{what} must be finite, but it is {value}.  Give a finite real number.")
     if value.is_finite is None:
         raise BadInputError(f"{what} must be finite, and SymPy does not tell whether {value} is.  Give its digits, as "
@@ -264,6 +268,9 @@ def _quotients(top: int) -> list[Any]:
 # -- as many digits as asked for ---------------------------------------------
 
 
+MOST_DIGITS = 10_000_000
+
+
 def check_digits(digits: Any) -> int | None:
     """``None`` for float64, or a positive number of decimal digits."""
     if digits is None:
@@ -272,6 +279,8 @@ def check_digits(digits: Any) -> int | None:
         raise BadTypeError(f"digits must be None or a positive integer, but it is {digits!r}.  Use digits=50, say.")
     if digits < 1:
         raise BadInputError(f"digits must be at least 1, but it is {digits}.  Use digits=None for float64.")
+    if int(digits) > MOST_DIGITS:
+        raise BadInputError(f"digits must be at most {MOST_DIGITS}, but it is {digits}.  Use fewer.")
     return int(digits)
 
 
@@ -327,12 +336,16 @@ def to_complex(z: Any, digits: int | None) -> Any:
     return complex(real, imag) if digits is None else mpmath.mp.make_mpc((real._mpf_, imag._mpf_))
 
 
+LEAST = 5e-324  # the least positive float
+
+
 def upper_float(x: Any) -> float:
     """The least float that is not below an exact ball; ``inf`` beyond all floats."""
     if not x.is_finite():
         return math.inf
     mantissa, exponent = x.upper().man_exp()
-    return float(libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "c"), rnd="c"))
+    found = float(libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "c"), rnd="c"))
+    return found if found or mantissa <= 0 else LEAST
 
 
 def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, digits: int | None) -> list[Any]:

@@ -149,7 +149,8 @@ class FloquetMatrix:
         return {}
 
     def entry(self, i: int, j: int) -> Modes:
-        """Entry ``(i, j)`` in the engine's form."""
+        """Entry ``(i, j)`` in the engine's form; raises ShapeError where there is none."""
+        i, j = place((i, j), self.shape)
         if (i, j) not in self._entries:
             result: Modes = {}
             for k in range(self.n + 1):
@@ -332,7 +333,11 @@ class FloquetMatrix:
 
     def _true(self, exact: Mapping[Any, Any], digits: int, strict: bool = True) -> Any:
         """The true matrix in balls with these digits, or if not strict with those that wide parameters leave."""
-        return over_period(lambda: self.at(exact), self.turns, digits, is_box(exact), strict)
+        try:
+            return over_period(lambda: self.at(exact), self.turns, digits, is_box(exact), strict)
+        except OverflowError:
+            raise BadInputError(f"the coefficients of P must be floats in size, but at {dict(exact)} they are beyond "
+                                "them.  Measure the time in other units.") from None
 
     def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, list[Any]]:
         """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic forms."""

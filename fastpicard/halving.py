@@ -92,7 +92,7 @@ class Halving:
             rest = sum(map(self.area, chunks))
             if rest <= self.target or self.over():
                 break
-            halvings = max(1.0, 1.0 + numpy().log2(rest / self.target))
+            halvings = max(1.0, 1.0 + numpy().log2(rest / max(self.target, rest / MOST)))
             new: list[Chunk] = []
             stored = 0
             for k, chunk in enumerate(chunks):

@@ -10,6 +10,7 @@ so ``sqrt(2)``, ``g/l`` and ``1/(b + c)`` come back as what they were.
 from __future__ import annotations
 
 import numbers
+from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
@@ -63,6 +64,8 @@ def as_expression(value: Any, what: str = "the expression") -> Expr:
     if isinstance(value, bool | sympy.Lambda) or not scalar:
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is {value!r}, "
                            f"a {type(value).__name__}.  For a matrix, work on its entries.")
+    if isinstance(value, Decimal) and value.is_finite():
+        return sympy.Rational(*value.as_integer_ratio())  # SymPy would round it to 15 digits
     return sympy.sympify(value)
 
 

@@ -25,8 +25,8 @@ from mpmath.libmp import dps_to_prec
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.enclosure import mirrored, shortfall
-from fastpicard.errors import BadTypeError
-from fastpicard.evaluate import Point, Values, check_digits, refine
+from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.evaluate import Point, Values, check_digits, refine, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, reversal
 from fastpicard.precision import working
@@ -114,8 +114,11 @@ class Table:
         with working(128):
             P, h = self._at(box)
             self.order = a_priori_order(P, h, arb(10) ** -(digits + SPARE_DIGITS))
-            growth = largest_row_sum((P.bound * h).exp())
-        self.bits = dps_to_prec(digits + SPARE_DIGITS) + 8 + 2 * math.ceil(math.log2(float(growth)))
+            growth = upper_float(largest_row_sum((P.bound * h).exp()))
+        if growth == math.inf:
+            raise BadInputError(f"a table covers a box of parameters in which solutions stay below 1e308, but in "
+                                f"{dict(box)} they may grow further.  Take smaller ones.")
+        self.bits = dps_to_prec(digits + SPARE_DIGITS) + 8 + 2 * math.ceil(math.log2(growth))
         with working(self.bits):
             self._read(F.over(self.turns, self.order))
 

@@ -17,6 +17,7 @@ complex a within 1 as well, so Cauchy's estimate makes it a bound of the derivat
 
 from __future__ import annotations
 
+import numbers
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -41,6 +42,9 @@ Array = Any
 TERMS = 30  # of the Taylor polynomials
 NAMES = (("-1", "even"), ("+1", "odd"), ("+1", "even"), ("-1", "odd"))  # of A, B, C, D
 BLOCK = 0.09  # the first length of a block in a
+
+
+LEAST_RADIUS = 1e-250
 
 
 @dataclass(frozen=True)
@@ -154,7 +158,10 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
         name = chart.axes[0].symbol
         raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} "
                             f"is {slope.tolist()}.  Choose as x the parameter that is added to q.")
-    work = _Work(chart, radius)
+    if isinstance(radius, bool) or not isinstance(radius, numbers.Real) or not LEAST_RADIUS <= radius <= 1:
+        raise BadInputError(f"the radius of tubes must be from {LEAST_RADIUS} to 1, but it is {radius!r}.  Use "
+                            "radius=1e-8.")
+    work = _Work(chart, float(radius))
     pieces = work.run()
     area = sum(2 * p.radius * (p.hi - p.lo) for p in pieces)
     first, second = chart.axes

@@ -254,6 +254,9 @@ def _broadcast(arrays: list[Array]) -> list[Array]:
 
 
 def _checked(params: Sequence[Symbol], t: Symbol) -> tuple[Symbol, ...]:
+    if isinstance(params, set | frozenset):
+        raise BadTypeError(f"params must be in the order of the arguments, but it is the set {params}, which has none."
+                           "  Use [a, b].")
     listed = isinstance(params, Iterable) and not isinstance(params, str)
     names = [params] if isinstance(params, Symbol) else list(params) if listed else [params]
     if not all(isinstance(name, Symbol) for name in names):

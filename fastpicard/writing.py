@@ -84,7 +84,7 @@ class _Writer:
         self.t = t
         self.monomials: dict[Monomial, tuple[Keyed, bool]] = {}
         self.powers: dict[int, Keyed] = {0: ()}
-        self.waves: dict[tuple[bool, Angle], tuple[int, Keyed, bool]] = {}
+        self.waves: dict[tuple[bool, Angle], tuple[Any, Keyed, bool]] = {}
 
     def add(self, terms: list[tuple[Any, Expr]], kind: int, angle: Angle, monomial: Monomial, f: Any) -> None:
         """Append every term of one mode."""
@@ -92,8 +92,8 @@ class _Writer:
         for r, c in enumerate(f.coeffs()):
             if c:
                 sine, sign = algebra.function_of(kind, r)
-                own_sign, wave, regular = self.wave(sine, angle)
-                value = to_sympy_number(c * (sign * own_sign) / factorial(r))
+                own, wave, regular = self.wave(sine, angle)
+                value = to_sympy_number(c * (sign * own) / factorial(r))
                 product = sorted((*factors, *self.power(r), *wave), key=_first)
                 terms.append(_term(value, product) if plain and regular else
                              (None, Mul(value, *(e for _, e in product))))
@@ -111,8 +111,11 @@ class _Writer:
             self.powers[r] = _keyed([self.t**r])
         return self.powers[r]
 
-    def wave(self, sine: bool, angle: Angle) -> tuple[int, Keyed, bool]:
-        """cos or sin of an angle as SymPy evaluates it: the sign it pulls out, its factor, whether that is plain."""
+    def wave(self, sine: bool, angle: Angle) -> tuple[Any, Keyed, bool]:
+        """cos or sin of an angle as SymPy evaluates it: the number it pulls out, its factor, whether that is plain.
+
+        The number is a sign, but for phases such as ``acos(1/3)``, of which SymPy knows the cosine.
+        """
         key = (sine, angle)
         if key not in self.waves:
             if angle == NO_ANGLE:
@@ -121,8 +124,9 @@ class _Writer:
                 # Of a positive rational times t SymPy leaves the cosine as it is, after 2 ms of thought.
                 known = not angle[1] and len(angle[0]) == 1 and angle[0][0][0] == ONE
                 function = sin if sine else cos
-                sign, e = function(angle_expression(angle, self.t), evaluate=not known).as_coeff_Mul()
-                self.waves[key] = int(sign), _keyed([e]), isinstance(e, sin | cos)
+                number, e = function(angle_expression(angle, self.t), evaluate=not known).as_coeff_Mul()
+                self.waves[key] = (int(number) if number.is_Integer else rational(number), _keyed([e]),
+                                   isinstance(e, sin | cos))
         return self.waves[key]
 
 

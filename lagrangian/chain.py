@@ -7,7 +7,7 @@ downward vertical, anticlockwise, as in the notes: the same equations with ``g +
 
 The model is the least that the chain requires: ``"bobs"`` (tensions alone) where every rod is a point mass on a
 massless rod and no joint has a damper or a spring, ``"rods"`` otherwise.  Rods without mass are the limit of
-ever lighter rods of the same H and R.
+ever lighter rods of the same H and R, which all have the same mass: where two of them are neighbours it matters.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from .quantities import quantity, real_number, to_float
 from .recursion import accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
-from .single import MODELS, ordinary
+from .single import MODELS, accelerate_singly, ordinary
 from .states import exact_states, float_states, float_time, is_plain, shown, why_no_answer
 from .torques import exact_torques, joint_torques, joint_torques_of_many, without_limit
 
@@ -113,6 +113,12 @@ class CompiledChain:
         self.upright = upright
         self.has_torques = any(values is not None for values in self._joints)
         self.model = self._model(model)
+        self._made = True
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if "_made" in self.__dict__:
+            raise AttributeError(f"a chain does not change, and its {name} is set to {value}: make another one.")
+        super().__setattr__(name, value)
 
     def __len__(self) -> int:
         return self._count
@@ -228,7 +234,7 @@ class CompiledChain:
         if tried:  # one call of machine code is all
             free, constants, pull = tried
             out = np.empty(self._shape)
-            if free(constants, theta, omega, *pull, np.empty(9 * self._count), out):
+            if free(constants, theta, omega, *pull, np.empty(10 * self._count), out):
                 return out
         if not (plain and 0 < theta.ndim < 3 and len(theta) == self._count):
             arithmetic = arithmetic_of(t, theta, omega)
@@ -265,18 +271,22 @@ class CompiledChain:
                                 f"Give them a mass, or other angles.")
 
     @cached_property
+    def _counterweighted(self) -> bool:
+        """Whether a rod has its centre beyond its near joint: then sums cancel that are positive otherwise."""
+        return bool((self.rods[:, 6] < 0).any())
+
+    @cached_property
     def _unasked(self) -> bool | None:
         """True where the chain is not asked for its doubt while it is bent, else None: torques might balance."""
-        return self._count >= LONG_EVEN and not self.has_torques and even(*self.rods[:, :3].T) or None
+        spared = self._count >= LONG_EVEN and not self.has_torques and not self._counterweighted
+        return spared and even(*self.rods[:, :3].T) or None
 
     def _again(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of states (n, chains) from exact numbers, rounded once."""
         pull = self.fine_pull(t)
-        found = in_pairs(self._in_pairs, pull, theta, omega)
-        if found is None:
-            found = np.empty_like(theta)
-            for j in range(theta.shape[1]):
-                found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
+        found, left = in_pairs(self._in_pairs, pull, theta, omega)
+        for j in np.flatnonzero(left).tolist():
+            found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
         return found
 
     def fine_pull(self, t: Any) -> Any:
@@ -313,7 +323,7 @@ class CompiledChain:
         single, constants = self._single
         if single is None:
             return self._many(theta, omega, ax, ay, out)
-        space = np.empty(9 * self._count) if self._count < LONG else self._space()
+        space = np.empty(10 * self._count) if self._count < LONG else self._space()
         tau = self.torques(theta, omega) if self.has_torques else None
         unasked = None if asked else self._unasked
         done, doubtful = single(constants, theta, omega, tau, ax, ay, large, unasked, space, out)
@@ -344,13 +354,14 @@ class CompiledChain:
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""
         if not hasattr(self._kept, "space"):
-            self._kept.space = np.empty(9 * self._count)
+            self._kept.space = np.empty(10 * self._count)
         return self._kept.space
 
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
         tau = self.torques(theta, omega) if self.has_torques else None
         if has_numba() and theta.ndim == 2:
-            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, out)
+            together = accelerate_singly if self._counterweighted else accelerate_together
+            found = together(self.rods, theta, omega, tau, ax, ay, out)
             if found[0]:
                 return found
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)

@@ -53,8 +53,12 @@ def even(m: Any, l: Any, I: Any) -> bool:
 
 
 def to_floats(values: Any) -> Any:
-    """Numbers as float64, shape (n,); None stays None."""
-    return None if values is None else np.array([to_float(x) for x in values])
+    """Numbers as float64, shape (n,), read only; None stays None."""
+    if values is None:
+        return None
+    found = np.array([to_float(x) for x in values])
+    found.flags.writeable = False
+    return found
 
 
 def column(values: Any, name: str) -> Any:

@@ -22,6 +22,7 @@ from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
 from .redone import in_pairs, rows_in_pairs
 from .shaking import shaking_of
+from .single import accelerate_singly
 from .states import float_time, floats, is_plain, why_no_answer
 from .torques import joint_torques, joint_torques_of_each
 
@@ -82,6 +83,12 @@ class Ensemble:
         self._members: dict[int, CompiledChain] = {}
         self._first = self[0]
         self.gravity = self._first.gravity  # exact, once the first chain has checked it
+        self._made = True
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if "_made" in self.__dict__:
+            raise AttributeError(f"a ensemble does not change, and its {name} is set to {value}: make another one.")
+        super().__setattr__(name, value)
 
     def __len__(self) -> int:
         return len(self._columns[0])
@@ -153,11 +160,11 @@ class Ensemble:
     def _again(self, t: Any, doubtful: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` of some chains from exact numbers: all at once in pairs, or one after the other."""
         constants = [None if x is None else x[..., doubtful] for x in self._in_pairs]
-        found = in_pairs(constants, self._first.fine_pull(t), theta.T, omega.T)
-        if found is not None:
-            return found.T
-        which = np.flatnonzero(doubtful).tolist()
-        return np.stack([self[j].acceleration(t, *state) for j, *state in zip(which, theta, omega, strict=True)])
+        found, left = in_pairs(constants, self._first.fine_pull(t), theta.T, omega.T)
+        which = np.flatnonzero(doubtful)
+        for j in np.flatnonzero(left).tolist():
+            found[:, j] = self[int(which[j])].acceleration(t, theta[j], omega[j])
+        return found.T
 
     def _checked(self, state: Any, name: str) -> Any:
         if state.shape != self._columns[0].shape:
@@ -169,7 +176,9 @@ class Ensemble:
         """Write ``theta''`` in float64 alone; whether all are finite, and which chains are in doubt."""
         tau = self._torques(theta, omega)
         if has_numba():
-            found = accelerate_together(self._lanes, theta.T, omega.T, None if tau is None else tau.T, ax, ay, out.T)
+            together = accelerate_together if self._singly is None else accelerate_singly
+            rods = self._lanes if self._singly is None else self._singly
+            found = together(rods, theta.T, omega.T, None if tau is None else tau.T, ax, ay, out.T)
             if found[0]:
                 return found
         rods = np.stack([row.T for row in float_row(*self._columns)], axis=1)
@@ -185,6 +194,11 @@ class Ensemble:
             damping, springs = (None if x is None else x.T for x in (self.damping, self.springs))
             joint_torques(theta.T, omega.T, damping, springs, tau.T)
         return tau
+
+    @cached_property
+    def _singly(self) -> Any:
+        """Rods, shape (chains, n, 8), where the centre of one is beyond its near joint, else None."""
+        return np.stack(float_row(*self._columns), axis=-1) if (self._columns[2] < 0).any() else None
 
     @cached_property
     def _lanes(self) -> Any:

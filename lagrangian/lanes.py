@@ -252,7 +252,7 @@ def accelerate_rows(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: An
     """
     n = len(theta)
     s, c = np.empty_like(theta), np.empty_like(theta)
-    doubt = np.empty((2, *theta.shape))
+    doubt = np.empty((3, *theta.shape))
     with np.errstate(all="ignore"):
         sines_of_large_joints(theta, s, c)
         accelerate_rods(rods, omega * omega, tau, s, c, ax, ay, np.empty((n, 4, *theta.shape[1:])), doubt, out)

@@ -55,7 +55,7 @@ class NormalModes:
     Attributes
     ----------
     mu : tuple of N, ascending where they are numbers; without unit for equal rods, else 1/m (1/s**2 where s is 1)
-    U : Matrix, shape (N, N), the modes in its columns, the last component of each 1; A-orthogonal
+    U : Matrix, shape (N, N), the modes in its columns, the last component of each 1, or 0; A-orthogonal
     A, B : Matrices, shape (N, N), constant, symmetric; A of equal rods is divided by ``m l**2``
     time_factor : s(t); ``A theta'' + s(t) B theta = 0``
     digits : None where mu is exact; else the number of correct digits of mu

@@ -44,7 +44,9 @@ follows the linear map that the pair itself follows,
 
     C <- T (C + diag(tu**2, tn**2)) T^T + (what l z, w1 and w2 add),   T = [[1, 0], [-w1, w0]] [[c, s], [-s, c]],
 
-so that errors which belong together stay together, and the estimate does not grow from rod to rod as balls do.  The
+so that errors which belong together stay together, and the estimate does not grow from rod to rod as balls do.
+Counterweights, rods with ``H < 0``, are the one case in which ``m H + l Pnn`` and ``m H + l E/D`` cancel: what they
+lose is counted too, ``2 |m H| alpha_n/D`` in theta'', and what qu' loses is carried on.  The
 root of the largest variance of a theta'' over the largest theta'' is the *doubt*, an estimate and no bound.  An answer
 in more doubt than DOUBT is found again with twice the digits (:mod:`lagrangian.redone`); of random hard chains, none
 in less was beyond 4e-15 (``benchmarks/hard_chains.py``).  Tensions of bobs have a doubt by the same rule.
@@ -127,7 +129,7 @@ def spread(s: Any, c: Any, tu: Any, tn: Any, ahead: Any, lz: Any, w0: Any, w1: A
     uu, nn = uu + tu * tu, nn + tn * tn
     x, y = uu * c + un * s, un * c + nn * s
     duu, dun = x * c + y * s, y * c - x * s
-    dnn = (uu + nn) - duu
+    dnn = (nn * c - un * s) * c - (un * c - uu * s) * s  # not the trace less duu, where little acts across
     duu = duu + lz * lz
     un, g = w0 * dun - w1 * duu, w0 * dnn - w1 * dun
     nn = (w0 * g - w1 * un) + (v1 * (ahead * ahead) + v2)
@@ -139,11 +141,11 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
     """Write ``theta''`` of physical rods to ``out``.
 
     Shapes: rods (n, 8), rows ``m, l, I, Ic, J, It, m H, m (l - H)``; z, s, c, out (n,); work (n, 4); tau (n,) or
-    None, the torque on each rod; ``(ax, ay)`` the acceleration of the support, with g added to ay; doubt (2, n) or
+    None, the torque on each rod; ``(ax, ay)`` the acceleration of the support, with g added to ay; doubt (3, n) or
     None, in its row 0 the variance of each ``theta''``, written.
     """
     n = rods.shape[0]
-    Vp = Vq = 0 * z[n - 1]
+    Vp = Vq = Vu = 0 * z[n - 1]
     Puu = Pun = Pnn = Delta = qu = qn = ku = kn = 0 * z[n - 1]
     for i in range(n):
         k = n - 1 - i
@@ -163,10 +165,14 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
             f0, f1, f2, f3 = f0 + t * g0, f1 + t * g1, f2 + t * g2, f3 + t * g3
         if doubt is not None:
             ll = l * l * r
+            size = abs(mH)
             doubt[0, k], doubt[1, k] = ll * ll * Vq + work[k, 2] * work[k, 2], ll * ll * Vp
-            Vp, Vq = spread_within(s[k], c[k], a, x, y, f0, z[k] * (mH + l * Er))
+            doubt[2, k] = (size - mH) * r
+            b, before = z[k] * (size + l * Er), I * I * (r * r) * Vu
+            Vp, Vq = spread_within(s[k], c[k], a, x, y, f0, b)
+            Vq, Vu = Vq + before * (s[k] * s[k]), (f0 * f0 + b * b + before) * (c[k] * c[k])
             if tau is not None:
-                w, g, h = t * l * r, t * g0, t * g1
+                w, g, h = t * l * r, t * g0, t * (g1 + doubt[2, k])
                 doubt[0, k] += w * w
                 Vq = Vq + (g * g * s[k] * s[k] + h * h * c[k] * c[k])
         Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
@@ -182,7 +188,8 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
         if doubt is not None:
             uu, un, nn, v = spread(s[k], c[k], tu, tn, au - lz, lz, work[k, 0], work[k, 1], doubt[1, k], doubt[0, k],
                                    uu, un, nn)
-            doubt[0, k] = v * (per * per)
+            lost = an * doubt[2, k]
+            doubt[0, k] = v * (per * per) + lost * lost
         tu = au - lz
         tn = work[k, 0] * an - work[k, 2] - work[k, 1] * tu
         out[k] = -(work[k, 3] * an + (work[k, 2] + work[k, 1] * tu) * per)

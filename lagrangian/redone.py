@@ -3,8 +3,8 @@ r"""Accelerations that float64 leaves in doubt, once more with twice the digits 
 :mod:`lagrangian.recursion` says of every answer how much of it rounding may have taken.  Where that is too much, one
 random state of an ordinary chain in some hundreds, the same recursion runs again on the exact numbers: constants,
 sines and torques are formed anew, because float64 has rounded them too.  With numba the numbers are pairs of floats,
-31 digits; without it, or where the range of pairs does not suffice, mpmath's of DIGITS digits, far slower still
-(``benchmarks/hard_chains.py`` prints what it costs).
+31 digits; without it, or where pairs do not suffice, by their range or because all but nothing is left of what acts,
+mpmath's of DIGITS digits, far slower still (``benchmarks/hard_chains.py`` prints what it costs).
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from .pairs import added, multiplied, subtracted, to_pairs
 __all__ = ["FINE", "constants_in_pairs", "in_pairs", "rows_in_pairs"]
 
 DIGITS = 150  # and the products of four floats are exact
+LEFT = 1e-12  # of what acts: pairs lose the digits before it, and hard chains some more
 WIDEST = 1e40  # of a constant, and its inverse the smallest: five of them multiplied stay far within float64
 
 
@@ -63,17 +64,22 @@ def rows_in_pairs(m: Any, l: Any, H: Any, R: Any) -> Any:
     return np.stack([high + 1j * low for high, low in rows], axis=1)
 
 
-def in_pairs(constants: Any, pull: Any, theta: Any, omega: Any) -> Any:
-    """``theta''`` of states (n, chains) in double-double, rounded to float64; None where that has not the range.
+def in_pairs(constants: Any, pull: Any, theta: Any, omega: Any) -> tuple[Any, Any]:
+    """``theta''`` of states (n, chains) in double-double, rounded to float64, and which chains need more digits.
 
     ``constants``: rods (n, 8, chains), damping and springs (n, chains) or None, in pairs, or 1 in place of chains where
     all have the same; ``pull`` two numbers of FINE, or floats.
     """
     size = abs(constants[0].real[constants[0].real != 0])
     if not has_numba() or not (1 / WIDEST < size.min() <= size.max() < WIDEST and abs(theta).max() < 0.5 * LARGEST):
-        return None
+        return np.empty(theta.shape), np.ones(theta.shape[1], dtype=bool)
     ax, ay = to_pairs(pull)
     out = np.empty(theta.shape)
-    each = [None if x is None else np.broadcast_to(x, (*x.shape[:-1], theta.shape[1])) for x in constants]
+    each: list[Any] = [None if x is None else np.broadcast_to(x, (*x.shape[:-1], theta.shape[1])) for x in constants]
     _translated()(*each, theta, omega, ax, ay, out)
-    return out if np.isfinite(out).all() else None
+    rods, joints = each[0].real, [None if x is None else x.real for x in each[1:]]
+    acts = (omega * omega).max(axis=0) + max(abs(ax.real), abs(ay.real)) / rods[:, 1].min(axis=0)
+    for constant, angle in zip(joints, (omega, theta), strict=True):
+        if constant is not None:
+            acts = acts + (abs(constant * np.diff(angle, axis=0, prepend=0.0)) / rods[:, 2]).max(axis=0)
+    return out, ~(abs(out).max(axis=0) > LEFT * acts)

@@ -29,6 +29,7 @@ from sympy import (
     Dummy,
     Function,
     Heaviside,
+    I,
     ImmutableDenseMatrix,
     Max,
     Min,
@@ -173,7 +174,10 @@ class Support:
 
     def __post_init__(self) -> None:
         for name in ("xi", "eta"):
-            object.__setattr__(self, name, quantity(getattr(self, name), name))
+            given = quantity(getattr(self, name), name)
+            if given.has(I) and not im(given.xreplace({x: Dummy(real=True) for x in given.free_symbols})).equals(0):
+                raise QuantityError(f"{name} is {given}, which is not real: give a real motion.")
+            object.__setattr__(self, name, given)
 
     def __repr__(self) -> str:
         return f"Support(xi={self.xi}, eta={self.eta})"

@@ -228,6 +228,8 @@ def shaking_of_expressions(xi: Any, eta: Any, t: Any, motion: tuple[Any, ...] = 
     except NoWave:
         return Shaking(function=_evaluated((xi, eta), t), motion=_evaluated(motion, t),
                        name=f"the support's acceleration ({xi}, {eta})")
+    if not all(x.is_real for part in parts for q, sizes in part.items() for x in (q, *sizes)):
+        raise QuantityError(f"the support's acceleration ({xi}, {eta}) is not real: give a real motion.")
     none = Integer(0), Integer(0)
     waves = {q: parts[0].get(q, none) + parts[1].get(q, none) for q in sorted({*parts[0], *parts[1]})}
     cx, _, cy, _ = waves.pop(Integer(0), none + none)

@@ -43,6 +43,7 @@ __all__ = ["simulate"]
 METHODS = ("taylor", *SCIPY_METHODS, "heyoka", "linear")
 SAFETY = 6.0
 TINY = float(np.finfo(float).tiny)  # beyond so many digits the error, a float, is stated as this
+MOST_DIGITS = 100_000
 FLOAT_LIMIT = 1e-14  # accuracies below it need more digits than float64 has
 
 
@@ -297,6 +298,8 @@ def _digits(asked: Any) -> int | None:
         return None
     if isinstance(asked, bool) or not isinstance(asked, Integral) or asked < 1:
         raise QuantityError(f"digits is {asked!r}: give how many decimal digits to compute with, such as 30.")
+    if int(asked) > MOST_DIGITS:
+        raise QuantityError(f"digits is {asked}: give at most {MOST_DIGITS}; orders grow with them.")
     return int(asked)
 
 

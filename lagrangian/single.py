@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines
-from .machine import rebound, reordered
+from .machine import allocating, machine, rebound, reordered
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 
-__all__ = ["MODELS", "ordinary", "single_bobs", "single_rods"]
+__all__ = ["MODELS", "accelerate_singly", "ordinary", "single_bobs", "single_rods"]
 
 BENT = 0.01  # long even chains whose joints are so bent are in no doubt (benchmarks/hard_chains.py bent)
 
@@ -92,13 +92,13 @@ def single_rods(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: floa
 
     ``tau`` is (n,) or None; ``large`` None or True, see :func:`joint_sines`; ``unasked`` True where a chain that is
     bent is not asked for its doubt, else None, so that the code for that is not translated; one that is not bent is
-    left undone and in doubt.  ``space``, (9 n,), is for intermediate values.
+    left undone and in doubt.  ``space``, (10 n,), is for intermediate values.
     """
     n = theta.shape[0]
     s, c, z, work = space[:n], space[n:2 * n], space[2 * n:3 * n], space[3 * n:7 * n].reshape(n, 4)
     right = joint_sines(theta, omega, large, s, c, z)
     if unasked is None:
-        doubt = space[7 * n:9 * n].reshape(2, n)
+        doubt = space[7 * n:10 * n].reshape(3, n)
         accelerate_rods(rods, z, tau, s, c, ax, ay, work, doubt, out)
         done, doubtful = judged(out, doubt[0])
     elif not bent(s, c):
@@ -125,6 +125,39 @@ def single_bobs(bobs: Any, theta: Any, omega: Any, tau: None, ax: float, ay: flo
         accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
         done, doubtful = finite(out), False
     return done and right, doubtful
+
+
+@allocating
+def one_by_one(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, doubtful: Any, out: Any) -> bool:
+    """Write ``theta''`` of many chains, one after the other, and which are in doubt; whether all could be found.
+
+    Shapes: rods (n, 8), or (chains, n, 8); theta, omega, out (n, chains); tau the same or None; doubtful (chains,).
+    """
+    n, chains = theta.shape
+    state, space, done = np.empty((4, n)), np.empty(10 * n), True
+    for j in range(chains):
+        for k in range(n):
+            state[0, k], state[1, k] = theta[k, j], omega[k, j]
+        torques = None
+        if tau is not None:
+            for k in range(n):
+                state[2, k] = tau[k, j]
+            torques = state[2]
+        own = rods
+        if rods.ndim == 3:
+            own = rods[j]
+        found, doubtful[j] = single_rods(own, state[0], state[1], torques, ax, ay, None, None, space, state[3])
+        done = done and found
+        for k in range(n):
+            out[k, j] = state[3, k]
+    return done
+
+
+def accelerate_singly(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
+    """As :func:`lagrangian.lanes.accelerate_together`, for chains with rods whose centre is beyond their near joint."""
+    doubtful = np.empty(theta.shape[1], dtype=bool)
+    done = machine(one_by_one)(rods, theta, omega, tau, ax, ay, doubtful, out)
+    return done, doubtful
 
 
 MODELS = {"bobs": single_bobs, "rods": single_rods}

@@ -40,9 +40,12 @@ class Trajectories:
     def __getitem__(self, j: Any) -> Any:
         """The motion of chain j, a :class:`Trajectory`; of a slice those of its chains.
 
-        Raises IndexError where there is no chain j.
+        Raises IndexError where there is no chain j, SceneError where a slice holds none.
         """
         if isinstance(j, slice):
+            if not self.members[j]:
+                raise SceneError(f"these are the motions of {len(self)} chains, and {j} holds none of them: give a "
+                                 f"slice that does.")
             return Trajectories(self.members[j])
         return self.members[place(j, len(self), "these are the motions of")]
 

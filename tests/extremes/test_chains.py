@@ -345,6 +345,49 @@ def test_a_torque_on_rods_without_mass_that_fold_back_is_answered_or_refused(the
             ensemble.acceleration(0, *([x, x] for x in state))
 
 
+@pytest.mark.parametrize("H", [-0.9, -1.001, -1.0000001, -1.00000000001, -1.0])
+@pytest.mark.parametrize("folded", [0.0, 1.5])
+def test_rods_balanced_by_counterweights(H, folded):
+    """A beam whose weights all but balance, one, many and an ensemble; only H < 0 lets these sums cancel."""
+    rods = np.array([1.0, 1.0]), np.array([1.0, 1.0]), np.array([H, 0.5]), np.array([1.5, 0.6])
+    theta, omega = np.array([np.pi / 2, np.pi - folded]), np.array([0.0, folded])
+    exact, chain = dense(*rods, 9.81, theta, omega), CompiledChain(*rods)
+
+    assert error(chain.acceleration(0, theta, omega), exact) < 4e-15
+    assert error(chain.acceleration(0, *(np.stack([x, x + 1], axis=1) for x in (theta, omega)))[:, 0], exact) < 4e-15
+    ensemble = Ensemble([rods[0]] * 3, *rods[1:])
+    assert error(ensemble.acceleration(0, [theta] * 3, [omega] * 3)[1], exact) < 4e-15
+
+
+def test_random_chains_with_counterweights():
+    """Hard and ordinary ones, most with one rod that balances what hangs on it."""
+    for seed in range(400):
+        rng = np.random.default_rng(seed)
+        n = int(rng.integers(1, 6))
+        m, l, H, R, theta, omega = hard_chain(KINDS[seed % len(KINDS)] if seed % 2 else "nothing", n, rng)
+        width, k = np.sqrt(R**2 - H**2), int(rng.integers(n))
+        H = np.where(rng.random(n) < 0.6, -H, H)
+        if k + 1 < n:
+            H[k] = -l[k] * m[k + 1:].sum() / m[k] * (1 + rng.choice([0, 1e-3, 1e-6, 1e-9]) * rng.normal())
+            theta = np.where(rng.random(n) < 0.4, np.pi / 2 * rng.integers(-2, 3, n), theta)
+        R = np.sqrt(H**2 + width**2) * (1 + 1e-15)
+        chain = CompiledChain(m, l, H, R)
+
+        assert error(chain.acceleration(0, theta, omega), dense(m, l, H, R, 9.81, theta, omega)) < 4e-15, seed
+
+
+@pytest.mark.parametrize(("springs", "angle"), [(9.379316412639021, 0.5166775995398224), (9.81, 1e-5)])
+def test_a_spring_that_balances_the_weight_is_weighed_with_more_than_pairs(springs, angle):
+    """1e-20 is left of 10: pairs of floats would leave eleven digits of it."""
+    theta, one = np.array([angle]), np.ones(1)
+    exact = dense(one, one, one, one, 9.81, theta, 0 * one, springs=[springs])
+    chain, ensemble = (kind(x, one, one, one, springs=[springs])
+                       for kind, x in ((CompiledChain, one), (Ensemble, [one, one])))
+
+    assert error(chain.acceleration(0, theta, 0 * one), exact) < 4e-15
+    assert error(ensemble.acceleration(0, [theta] * 2, np.zeros((2, 1)))[1], exact) < 4e-15
+
+
 def test_a_massless_rod_with_a_spring_has_no_answer():
     """It would turn infinitely fast, and the error says so."""
     with pytest.raises(SceneError, match="rod 1 has no mass, and the springs"):

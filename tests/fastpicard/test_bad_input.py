@@ -2,6 +2,7 @@
 
 import json
 import re
+from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 
@@ -47,11 +48,15 @@ from fastpicard import (
     NotPeriodicError,
     PoissonSeries,
     ShapeError,
+    boundaries,
+    certify,
     fast_picard,
     gather,
     new_integrate,
     picard,
     product_to_sum,
+    tabulate,
+    tubes,
 )
 from tests.oracles import vanishes
 
@@ -1055,3 +1060,35 @@ def test_a_series_is_not_divided_by_zero_or_by_functions_of_time(divisor):
     """The quotient would leave the family."""
     with pytest.raises(FastPicardError, match="divisor"):
         PoissonSeries(cos(t), t) / divisor
+
+
+@pytest.mark.parametrize("ask", [
+    lambda F, B: F.lambdify({a, b}),
+    lambda F, B: F.lambdify_trace(frozenset([a, b])),
+    lambda F, B: F.entry(0, 2),
+    lambda F, B: F.evaluate({a: mpmath.iv.mpf([0, 1]), b: 1}),
+    lambda F, B: F.evaluate({a: Decimal("nan"), b: 1}),
+    lambda F, B: F.evaluate({a: sympy.nan, b: 1}),
+    lambda F, B: F.evaluate({a: 1, b: 1}, digits=10**10),
+    lambda F, B: F.enclosure({a: sympy.Float("1e10000"), b: 1}),
+    lambda F, B: tabulate(F, {a: (-1e6, 1), b: 0}),
+    lambda F, B: certify(F, (a, arb("0 +/- 1"), 2), (b, 0, 1)),
+    lambda F, B: certify(F, (a, 0, 1), (b, -1e-320, 1)),
+    lambda F, B: certify(F, (a, -(10**400), 1), (b, 0, 1)),
+    lambda F, B: certify(F, (a, 0, 1), (b, 0, 1), fixed=5),
+    lambda F, B: certify(F, (a, 0, 1), (b, 0, 1), modes=[]),
+    lambda F, B: boundaries(F.P),
+    lambda F, B: B.root(a, (-0.7, 0.2), 5),
+    lambda F, B: B.follow((a, -1, 1), (b, 0, 1), (5, 5)),
+    lambda F, B: B.follow((a, 1, -1), (b, 0, 1), (0, 0)),
+    lambda F, B: B.follow((a, -1, 1), (b, 0, 1), ("0.1", "0.2")),
+    lambda F, B: B.follow((a, -1, 1), (b, 0, 1), None),
+    lambda F, B: B.follow((a, -1, 1), (b, 0, 1), (0, 0.1), step=0),
+    lambda F, B: tubes(F, (a, -1, 1), (b, 0, 1), radius=0),
+    lambda F, B: tubes(F, (a, -1, 1), (b, 0, 1), radius="x"),
+])
+def test_what_charts_and_curves_cannot_take_is_named(ask):
+    """Sets, which have no order; ends that are no floats; points outside; text."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 10)
+    with pytest.raises((BadInputError, BadTypeError, ShapeError, IndexError), match=r"(but|which|has no).*\."):
+        ask(F, boundaries(F)[2])

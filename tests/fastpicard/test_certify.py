@@ -346,3 +346,14 @@ def test_a_trace_of_mean_zero_is_certified_by_the_trace():
     assert chart.undecided < 0.02
     assert chart.fraction(Verdict.STABLE) > 0.3 and chart.fraction(Verdict.UNSTABLE) > 0.3
     assert not disagreements(chart, F, 30)
+
+
+def test_a_chart_may_be_asked_to_decide_all_and_at_any_real_point():
+    """undecided=0 ends with the time; sqrt(2)/2 is a coordinate."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 0)
+    chart = certify(F, (a, 0, 1), (b, 0, 1), undecided=0, seconds=1)
+
+    assert 0 < chart.undecided < 0.01
+    assert chart.verdict(Rational(1, 3), sqrt(2) / 2) == Verdict.UNSTABLE
+    with pytest.raises(BadTypeError, match="verdict"):
+        chart.fraction("STABLE")

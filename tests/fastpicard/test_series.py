@@ -1,6 +1,7 @@
 """Poisson series: laws of a commutative differential ring, equality, values and pickles."""
 
 import pickle
+from decimal import Decimal
 from fractions import Fraction
 
 import mpmath
@@ -9,7 +10,7 @@ import sympy
 from hypothesis import given, strategies as st
 from sympy import I, Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt, tan
 
-from fastpicard import PoissonSeries
+from fastpicard import FloquetMatrix, PoissonSeries, new_integrate, product_to_sum
 from tests.oracles import closeness, value_by_sympy, vanishes
 from tests.strategies import (
     VALUES,
@@ -455,3 +456,35 @@ def test_floats_in_exponents_do_not_round_when_factors_are_joined():
     assert not product.as_expr().atoms(sympy.Float)
     assert product == exp((Rational(0.1) + Rational(0.2)) * a)
     assert of(t**2.0) == t**2
+
+
+@pytest.mark.parametrize("phase", [sympy.acos(Rational(1, 3)), sympy.atan(2), -sympy.atan(Rational(3, 4)),
+                                   sympy.asin(Rational(2, 7)), sympy.asin(a / 2), 2 * sympy.acos(Rational(1, 3))])
+def test_phases_whose_cosine_sympy_knows_lose_nothing(phase):
+    """cos(acos(1/3)) comes back as 1/3, sin(atan(2)) as 2/sqrt(5): products and integrals, against numbers."""
+    value = {a: Rational(3, 5), t: Rational(7, 10)}
+    for wave in (cos(3 * t + phase), sin(3 * t + phase)):
+        integral = new_integrate(wave, t)
+        assert abs((integral.diff(t) - wave).subs(value).evalf(30)) < 1e-25
+        assert abs(integral.subs(t, 0).subs(value).evalf(30)) < 1e-25
+        for other in (cos(3 * t), sin(3 * t + sympy.pi / 5), wave):
+            apart = product_to_sum(wave * other, t) - wave * other
+            assert abs(apart.subs(value).evalf(30)) < 1e-25
+            assert abs((PoissonSeries(wave * other, t).as_expr() - wave * other).subs(value).evalf(30)) < 1e-25
+
+
+def test_decimals_are_the_numbers_they_are():
+    """As coefficients, limits and values, to their last digit."""
+    number = Decimal("0.1234567890123456789012345678901")
+    exact = Rational(1234567890123456789012345678901, 10**31)
+
+    assert PoissonSeries(number, t) == exact
+    assert new_integrate(cos(t), (t, 0, number)) == sin(exact)
+    with mpmath.workdps(45):
+        value = PoissonSeries(a * cos(t), t).evaluate(0, {a: number}, digits=40)
+        assert abs(value - mpmath.mpf(exact.p) / exact.q) < 1e-40
+
+
+def test_a_bound_below_all_floats_is_the_least_of_them():
+    """(2 pi a)**4/24, 6e-399."""
+    assert FloquetMatrix(Matrix([[a]]), t, 3).remainder({a: 1e-100}) == 5e-324

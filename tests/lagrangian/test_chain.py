@@ -15,6 +15,7 @@ from hypothesis import given, settings, strategies as st
 from sympy import (
     Dummy,
     Function,
+    I,
     Rational,
     cos,
     cosh,
@@ -39,6 +40,7 @@ from sympy import (
 from lagrangian import (
     CompiledChain,
     DriveError,
+    Ensemble,
     QuantityError,
     Rod,
     Scene,
@@ -451,3 +453,30 @@ def test_balls_of_numbers_of_any_mpmath_context_are_the_numbers_themselves():
         mantissa, exponent = ball.man_exp()
         assert ball.is_exact() and Fraction(int(mantissa)) * Fraction(2) ** int(exponent) == Fraction(
             int(third.man)) * Fraction(2) ** int(third.exp)
+
+
+def test_a_chain_does_not_change():
+    """Neither its attributes nor its joints, before a call or after one; nor an ensemble's."""
+    chain = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], damping=[1, 1], springs=[1, 1])
+    for made in (chain, Ensemble([[1, 1]] * 2, [1, 1], [1, 1], [1, 1], damping=1.0, springs=1.0)):
+        for name, value in (("upright", False), ("gravity", 0), ("damping", None), ("other", 1)):
+            with pytest.raises(AttributeError):
+                setattr(made, name, value)
+        for joints in (made.damping, made.springs):
+            with pytest.raises(ValueError, match="read-only"):
+                joints[...] = 0
+
+
+@pytest.mark.parametrize("eta", [I * cos(t), (1 + I) * t**2, cos(t) + I * sin(2 * t), I * t])
+def test_a_support_moves_in_real_space(eta):
+    """Waves and powers with complex numbers, which are real in no time."""
+    with pytest.raises(QuantityError, match="not real"):
+        Support(eta=eta)
+
+
+def test_a_root_of_a_value_below_zero_is_not_real():
+    """Which is seen when the scene is compiled."""
+    a = symbols("a")
+    scene = Scene([Rod.bob(1, 1)], Support(eta=sqrt(a) * cos(t)), gravity=10, t=t)
+    with pytest.raises(QuantityError, match="not real"):
+        scene.compile({a: -2})
