@@ -41,7 +41,7 @@ from .quantities import quantity, real_number, to_float
 from .recursion import accelerate_bobs, accelerate_rods
 from .redone import FINE, constants_in_pairs, in_pairs
 from .shaking import Shaking, shaking_of
-from .single import MODELS, accelerate_singly, ordinary
+from .single import MODELS, ordinary
 from .states import exact_states, float_states, float_time, is_plain, shown, why_no_answer
 from .torques import exact_torques, joint_torques, joint_torques_of_many, without_limit
 
@@ -84,7 +84,7 @@ class CompiledChain:
 
     Speed and accuracy
     ------------------
-    With numba: 25 to 40 ns a link for one long chain, 9 to 12 ns a link and chain for a thousand chains; an answer in
+    With numba: 16 to 40 ns a link for one long chain, 3 to 12 ns a link and chain for a thousand chains; an answer in
     doubt costs 12 to 50 times more, and the first one seconds of translation.  Without numba the same source runs as
     Python, 10 us a link.  Beyond angles of 8e5 the library's sine is used, a third slower; such an angle loses nothing
     as the float that it is, but that float itself knows the angle to 1e-10.
@@ -360,8 +360,7 @@ class CompiledChain:
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
         tau = self.torques(theta, omega) if self.has_torques else None
         if has_numba() and theta.ndim == 2:
-            together = accelerate_singly if self._counterweighted else accelerate_together
-            found = together(self.rods, theta, omega, tau, ax, ay, out)
+            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, self._counterweighted, out)
             if found[0]:
                 return found
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)

@@ -22,7 +22,6 @@ from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
 from .redone import in_pairs, rows_in_pairs
 from .shaking import shaking_of
-from .single import accelerate_singly
 from .states import float_time, floats, is_plain, why_no_answer
 from .torques import joint_torques, joint_torques_of_each
 
@@ -57,7 +56,7 @@ class Ensemble:
     Speed and accuracy
     ------------------
     Accelerations are as good as those of a :class:`lagrangian.CompiledChain`, within 4e-15 of the largest, and those
-    in doubt are found again.  A thousand chains of two to a hundred rods take 12 to 14 ns a link and chain, a quarter
+    in doubt are found again.  A thousand chains of two to a hundred rods take 4 to 14 ns a link and chain, a quarter
     more than chains with common rods (``benchmarks/chains.py many``).  Without numba NumPy's rows do it, tens of times
     slower.
 
@@ -176,9 +175,8 @@ class Ensemble:
         """Write ``theta''`` in float64 alone; whether all are finite, and which chains are in doubt."""
         tau = self._torques(theta, omega)
         if has_numba():
-            together = accelerate_together if self._singly is None else accelerate_singly
-            rods = self._lanes if self._singly is None else self._singly
-            found = together(rods, theta.T, omega.T, None if tau is None else tau.T, ax, ay, out.T)
+            tau_across = None if tau is None else tau.T
+            found = accelerate_together(self._lanes, theta.T, omega.T, tau_across, ax, ay, self._counterweighted, out.T)
             if found[0]:
                 return found
         rods = np.stack([row.T for row in float_row(*self._columns)], axis=1)
@@ -196,9 +194,9 @@ class Ensemble:
         return tau
 
     @cached_property
-    def _singly(self) -> Any:
-        """Rods, shape (chains, n, 8), where the centre of one is beyond its near joint, else None."""
-        return np.stack(float_row(*self._columns), axis=-1) if (self._columns[2] < 0).any() else None
+    def _counterweighted(self) -> bool:
+        """As for one chain: whether a rod has its centre beyond its near joint."""
+        return bool((self._columns[2] < 0).any())
 
     @cached_property
     def _lanes(self) -> Any:

@@ -43,10 +43,12 @@ CROWDED = 64  # links, or a multiple: a cache has 64 places for a line, and the 
 # theta'', 1 where an answer is in doubt; the angles of this rod and the one before, its torque.
 PUU, PUN, PNN, DELTA, QU, QN, KU, KN, VAR_QN, VAR_PUN, ANGLE, NOUGHT, ASKED, HERE, BEFORE, TAU = (
     range(0, 16 * LANES, LANES))
+VAR_QU = TAU + LANES  # of counterweighted chains: the variance of qu'
 # On the way back: the acceleration and its covariance, the largest theta''**2 and variance, theta''.
 TU, TN, C_UU, C_UN, C_NN, SIZE, SPREAD, FOUND = range(0, 8 * LANES, LANES)
 # What is kept of every link: w0, w1/l, w2/l, sine and cosine, (m H + l Pnn)/D, theta', variances of w2 and w1.
 W0, W1, W2, SIN, COS, W3, RATE, VAR_W2, VAR_W1 = range(0, 9 * LANES, LANES)
+LOST = VAR_W1 + LANES  # of counterweighted chains: what w3 loses
 # Rods of their own.
 MASS, LENGTH, CENTER, SPIN, COUPLING = range(0, 5 * LANES, LANES)
 
@@ -114,23 +116,25 @@ def give(rows: Any, k: int, first: int, end: int, groups: Any, held: Any, at: in
 
 
 @allocating
-def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, work: Any, groups: Any,
-                     excess: Any, out: Any) -> tuple[bool, bool]:
+def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: Any, counter: Any, work: Any,
+                     groups: Any, excess: Any, out: Any) -> tuple[bool, bool]:
     """Write ``theta''`` of all chains to ``out``, float64 only.
 
     Returns whether all are finite and all angles small enough, and whether an answer is in doubt.
 
-    Shapes: rods (n, 8), or as of :func:`in_lanes`; theta, omega, out (n, chains); tau the same or None; work
-    (n, 9 * LANES); groups None, or (3, GROUP * LANES), and then GROUP divides n; excess (chains,), written: how far the
-    largest variance is beyond what is in no doubt, positive or no number where the answer is in doubt.  All chains are
-    on one support, with acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
+    Shapes: rods (n, 8), or as of :func:`in_lanes`; theta, omega, out (n, chains); tau the same or None; counter True
+    where a rod has its centre beyond its near joint, else None; work (n, 9 * LANES), or 10 with counter; groups None,
+    or (3, GROUP * LANES), and then GROUP divides n; excess (chains,), written: how far the largest variance is beyond
+    what is in no doubt, positive or no number where the answer is in doubt.  All chains are on one support, with
+    acceleration ``(ax, ay)``.  Small enough is :data:`lagrangian.angles.LARGEST` / 2.
     """
     n, chains = theta.shape
-    held = np.zeros(TAU + LANES)
+    held = np.zeros(VAR_QU + LANES)
     largest = nought = again = 0.0
     for first in range(0, chains, LANES):
         width = min(LANES, chains - first)
         held[PUU:ANGLE] = 0.0
+        held[VAR_QU:] = 0.0
         take(theta, n - 1, first, first + width, groups, 0, held, HERE)
         for i in range(n):
             k = n - 1 - i
@@ -183,8 +187,17 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 s, c = o[SIN + j], o[COS + j]
                 b = rate * rate * (mH + l * Er)
                 held[VAR_PUN + j], held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
+                if counter is not None:
+                    size = abs(mH)
+                    lost, b, before = (size - mH) * r, rate * rate * (size + l * Er), I * I * (r * r) * held[VAR_QU + j]
+                    o[LOST + j] = lost
+                    _, held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
+                    held[VAR_QN + j] += before * (s * s)
+                    held[VAR_QU + j] = (f0 * f0 + b * b + before) * (c * c)
                 if tau is not None:
                     w, g, h = t * lr, t * g0, t * g1
+                    if counter is not None:
+                        h = t * (g1 + lost)
                     o[VAR_W2 + j] += w * w
                     held[VAR_QN + j] += g * g * s * s + h * h * c * c
                 Puu, Pun, Pnn = turned_inertia(s, c, a, x, y)
@@ -214,7 +227,10 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 held[C_UU + j], held[C_UN + j], held[C_NN + j] = uu, un, nn
                 if rods.ndim == 3:
                     per = 1.0 / l
-                held[SPREAD + j] = larger(v * (per * per), held[SPREAD + j])
+                v = v * (per * per)
+                if counter is not None:
+                    v += (an * o[LOST + j]) * (an * o[LOST + j])
+                held[SPREAD + j] = larger(v, held[SPREAD + j])
                 tu = au - lz
                 q = o[W2 + j] + o[W1 + j] * tu
                 tn, x = o[W0 + j] * an - l * q, -(o[W3 + j] * an + q)
@@ -234,14 +250,15 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
     return nought == 0.0 and largest <= 0.5 * LARGEST, again > 0.0
 
 
-def accelerate_together(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float,
+def accelerate_together(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, counterweighted: bool,
                         out: Any) -> tuple[bool, Any]:
     """:func:`accelerate_lanes`: whether it could, and which answers are in doubt, False for none."""
     n, chains = theta.shape
-    excess, work = np.empty(chains), np.empty((n, VAR_W1 + LANES))
+    excess, work = np.empty(chains), np.empty((n, LOST + LANES if counterweighted else LOST))
     crowded = theta.strides[1] > theta.itemsize and n % CROWDED == 0
     groups = np.empty((3, GROUP * LANES)) if crowded else None
-    done, again = machine(accelerate_lanes)(rods, theta, omega, tau, ax, ay, work, groups, excess, out)
+    done, again = machine(accelerate_lanes)(rods, theta, omega, tau, ax, ay, True if counterweighted else None, work,
+                                            groups, excess, out)
     return done, again and ~(excess <= 0.0)
 
 

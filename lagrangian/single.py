@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from .angles import LARGEST, difference, sines
-from .machine import allocating, machine, rebound, reordered
+from .machine import rebound, reordered
 from .recursion import DOUBT, accelerate_bobs, accelerate_rods
 
-__all__ = ["MODELS", "accelerate_singly", "ordinary", "single_bobs", "single_rods"]
+__all__ = ["MODELS", "ordinary", "single_bobs", "single_rods"]
 
 BENT = 0.01  # long even chains whose joints are so bent are in no doubt (benchmarks/hard_chains.py bent)
 
@@ -125,39 +125,6 @@ def single_bobs(bobs: Any, theta: Any, omega: Any, tau: None, ax: float, ay: flo
         accelerate_bobs(bobs, z, s, c, ax, ay, work, None, out)
         done, doubtful = finite(out), False
     return done and right, doubtful
-
-
-@allocating
-def one_by_one(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, doubtful: Any, out: Any) -> bool:
-    """Write ``theta''`` of many chains, one after the other, and which are in doubt; whether all could be found.
-
-    Shapes: rods (n, 8), or (chains, n, 8); theta, omega, out (n, chains); tau the same or None; doubtful (chains,).
-    """
-    n, chains = theta.shape
-    state, space, done = np.empty((4, n)), np.empty(10 * n), True
-    for j in range(chains):
-        for k in range(n):
-            state[0, k], state[1, k] = theta[k, j], omega[k, j]
-        torques = None
-        if tau is not None:
-            for k in range(n):
-                state[2, k] = tau[k, j]
-            torques = state[2]
-        own = rods
-        if rods.ndim == 3:
-            own = rods[j]
-        found, doubtful[j] = single_rods(own, state[0], state[1], torques, ax, ay, None, None, space, state[3])
-        done = done and found
-        for k in range(n):
-            out[k, j] = state[3, k]
-    return done
-
-
-def accelerate_singly(rods: Any, theta: Any, omega: Any, tau: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
-    """As :func:`lagrangian.lanes.accelerate_together`, for chains with rods whose centre is beyond their near joint."""
-    doubtful = np.empty(theta.shape[1], dtype=bool)
-    done = machine(one_by_one)(rods, theta, omega, tau, ax, ay, doubtful, out)
-    return done, doubtful
 
 
 MODELS = {"bobs": single_bobs, "rods": single_rods}

@@ -83,7 +83,7 @@ def test_links_that_crowd_the_cache_are_taken_in_groups(n, damping, monkeypatch)
     rng = np.random.default_rng(n)
     ensemble, (theta, omega) = Ensemble(*ordinary(rng, 70, n), damping=damping), state(rng, 70, n)
     groups, found = [], lanes.machine
-    monkeypatch.setattr(lanes, "machine", lambda function: lambda *given: groups.append(given[7]) or
+    monkeypatch.setattr(lanes, "machine", lambda function: lambda *given: groups.append(given[8]) or
                         found(function)(*given))
     together = ensemble.acceleration(0, theta, omega)
 
