@@ -23,7 +23,7 @@ from .arithmetic import MPNumbers
 from .chain import CompiledChain
 from .constants import substitution
 from .equations import EquationsOfMotion
-from .errors import NotASceneError, QuantityError, SceneError
+from .errors import DriveError, NotASceneError, QuantityError, SceneError
 from .machine import has_numba
 from .states import float_state, float_time
 
@@ -88,6 +88,12 @@ class CompiledEquations:
             theta, omega = self._floats(theta, "theta"), self._floats(omega, "omega")
         try:
             return self._solved(*self._function(time, *theta, *omega))
+        except OverflowError:
+            raise QuantityError(f"theta'' is beyond float64 at theta = {theta}, omega = {omega}: give smaller rates, "
+                                f"or use target='mpmath'.") from None
+        except NameError as unknown:
+            raise DriveError(f"the drive holds a function that NumPy does not have ({unknown}): use "
+                             f"target='mpmath'.") from None
         except (np.linalg.LinAlgError, ZeroDivisionError):
             raise QuantityError(f"the mass matrix is singular at theta = {theta}: where rods have no mass, use "
                                 f"scene.compile(values), which takes the limit.") from None

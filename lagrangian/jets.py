@@ -21,9 +21,11 @@ from operator import add, mul, neg, sub, truediv
 from typing import Any
 
 import numpy as np
-from sympy import Add, E, Mul, Pow, cos, cosh, cot, coth, csc, csch, exp, log, sec, sech, sin, sinh, tan, tanh
+from sympy import Add, E, Expr, Mul, Pow, cos, cosh, cot, coth, csc, csch, exp, log, sec, sech, sin, sinh, tan, tanh
 
+from .arithmetic import arithmetic_of
 from .errors import DriveError
+from .quantities import to_float
 
 __all__ = ["Jet", "evaluate"]
 
@@ -39,7 +41,15 @@ class Jet:
     def _like(self, coefficients: list[Any]) -> Jet:
         return Jet(coefficients, self.elementary)
 
+    def _taken(self, other: Any) -> Any:
+        """A SymPy number as one of the coefficients' kind, anything else as it is."""
+        if not isinstance(other, Expr):
+            return other
+        arithmetic = arithmetic_of(self.coefficients[0])
+        return to_float(other) if arithmetic is None else arithmetic.number(other)
+
     def _other(self, other: Any) -> list[Any]:
+        other = self._taken(other)
         zero = 0 * self.coefficients[0]
         return other.coefficients if isinstance(other, Jet) else [other + zero] + [zero] * (len(self.coefficients) - 1)
 
@@ -57,6 +67,7 @@ class Jet:
 
     def __mul__(self, other: Any) -> Jet:
         if not isinstance(other, Jet):
+            other = self._taken(other)
             return self._like([x * other for x in self.coefficients])
         x, y = self.coefficients, other.coefficients
         return self._like([reduce(add, map(mul, x[:k + 1], y[k::-1])) for k in range(len(x))])
@@ -75,6 +86,7 @@ class Jet:
     def __pow__(self, a: Any) -> Jet:
         if isinstance(a, Jet):
             return (a * self.log()).exp()
+        a = self._taken(a)
         if isinstance(a, (int, float, np.integer, np.floating)) and float(a).is_integer():
             a = int(a)
         if isinstance(a, int) and a >= 0:
@@ -88,10 +100,10 @@ class Jet:
         return self._like(y)
 
     def __rpow__(self, a: Any) -> Jet:
-        return self.__mul__(self.elementary["log"](a + 0 * self.coefficients[0])).exp()
+        return self.__mul__(self.elementary["log"](self._taken(a) + 0 * self.coefficients[0])).exp()
 
     def __truediv__(self, other: Any) -> Jet:
-        return self.__mul__(other.__pow__(-1) if isinstance(other, Jet) else 1 / other)
+        return self.__mul__(other.__pow__(-1) if isinstance(other, Jet) else 1 / self._taken(other))
 
     def __rtruediv__(self, other: Any) -> Jet:
         return self.__pow__(-1).__mul__(other)

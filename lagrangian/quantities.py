@@ -79,8 +79,9 @@ def _exact(value: Any, name: str) -> Any:
     """Numbers of every kind as exact rationals; SymPy scalars with their floats made exact."""
     if isinstance(value, Expr) and value.is_commutative and not getattr(value, "is_Matrix", False):
         return value.xreplace({x: Rational(*_ratio(x)) for x in value.atoms(Float) if x.is_finite})
-    if isinstance(value, bool):
-        raise NotAQuantityError(f"{name} is {value}, a truth value: give a number or a SymPy expression.")
+    if isinstance(value, (bool, np.timedelta64)):
+        kind = "a truth value" if isinstance(value, bool) else "which has a unit of time"
+        raise NotAQuantityError(f"{name} is {value}, {kind}: give a number or a SymPy expression.")
     if isinstance(value, Integral):
         return Integer(int(value))
     if isinstance(value, (flint.fmpz, flint.fmpq)):

@@ -29,7 +29,7 @@ from .digits import DigitRun, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .ensemble import Ensemble
 from .equations import EquationsOfMotion
-from .errors import DriveError, NotASceneError, QuantityError, SceneError
+from .errors import DriveError, NotAQuantityError, NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
 from .pieces import BallPieces, FloatPieces
 from .quantities import quantity, refuse_mask, refuse_text
@@ -359,6 +359,9 @@ def _initial(values: Any, name: str, n: int) -> Any:
 def _reporter(progress: Any, times: Any) -> Callable[[float], None] | None:
     if callable(progress):
         return progress  # type: ignore[no-any-return]
+    if not isinstance(progress, bool):
+        raise NotAQuantityError(f"progress is {progress!r}: give True for a line on the screen, or a function of the "
+                                f"time reached.")
     if not progress:
         return None
     started = written = time.monotonic()

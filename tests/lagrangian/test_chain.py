@@ -48,6 +48,7 @@ from lagrangian import (
     Support,
     TextError,
     euler_lagrange,
+    simulate,
 )
 from lagrangian.arithmetic import Balls, MPNumbers
 from lagrangian.errors import NotAQuantityError
@@ -480,3 +481,16 @@ def test_a_root_of_a_value_below_zero_is_not_real():
     scene = Scene([Rod.bob(1, 1)], Support(eta=sqrt(a) * cos(t)), gravity=10, t=t)
     with pytest.raises(QuantityError, match="not real"):
         scene.compile({a: -2})
+
+
+@pytest.mark.parametrize("amount", [Rational(1, 10), pi, sqrt(2)])
+def test_functions_of_time_may_hold_numbers_of_sympy(amount):
+    """In float64, double-double and balls, as the same functions of floats and digits."""
+    def shaken(c):
+        return CompiledChain([1], [1], [1], [1], upright=False,
+                             support_acceleration=lambda t: (c * np.cos(t) + c, c / (2 + t * t) - t**c))
+
+    chain, like = shaken(amount), shaken(float(amount))
+    times, expected = [1, 1.1], simulate(like, [1], [0], [1, 1.1]).theta[-1]
+    for digits in (None, 20, 40):
+        assert abs(simulate(chain, [1], [0], times, digits=digits).theta[-1] - expected).max() < 1e-12

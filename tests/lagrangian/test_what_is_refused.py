@@ -7,7 +7,7 @@ import flint
 import mpmath
 import numpy as np
 import pytest
-from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, cos, nan, oo, pi, sin, sqrt, symbols
+from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, besselj, cos, nan, oo, pi, sin, sqrt, symbols
 
 from lagrangian import (
     CompiledChain,
@@ -27,6 +27,7 @@ from lagrangian import (
     SceneError,
     Support,
     TextError,
+    compile_equations,
     euler_lagrange,
     linearize,
     normal_modes,
@@ -196,3 +197,23 @@ def test_numbers_of_flint_are_numbers():
     expected = CompiledChain([1, 1], [Rational(1, 3), 2], [0, 1], [Rational(1, 3), 2])
     assert (chain.rods == expected.rods).all()
     assert (chain.acceleration(0, [third, 0], [0, 1]) == expected.acceleration(0, [Fraction(1, 3), 0], [0, 1])).all()
+
+
+@pytest.mark.parametrize(("ask", "words"), [
+    (lambda chain: chain.acceleration(0, np.array([1, 2], dtype="m8[s]"), [0, 0]), "unit of time"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], progress=3), "progress is 3"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], digits=10**9), "at most 100000"),
+    (lambda chain: drum().acceleration(0.5, [1], [0]), "besselj.*target='mpmath'"),
+    (lambda chain: compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)] * 2, gravity=10))).acceleration(
+        0, [1, 1], [1e200, 0]), "beyond float64"),
+])
+def test_units_of_time_and_what_has_no_number_are_named(ask, words):
+    """Nothing ends in an error of NumPy or python-flint."""
+    with pytest.raises((QuantityError, NotAQuantityError, DriveError), match=words):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
+def drum():
+    """A bob on a support that moves by a function NumPy lacks, compiled."""
+    t = Symbol("t")
+    return compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)], Support(eta=besselj(0, t)), gravity=10, t=t)))
