@@ -98,7 +98,13 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
             found.append(Boundary(F, "collision", "", block, _discriminant_of_block))
         else:
             found.append(Boundary(F, "collision", "", whole, _discriminant))
+    for place, boundary in enumerate(found):
+        boundary.place = place
     return tuple(found)
+
+
+def _boundary(F: FloquetMatrix, place: int) -> Boundary:
+    return boundaries(F)[place]
 
 
 def _shifted(rows: Matrix, by: int) -> Matrix:
@@ -169,6 +175,11 @@ class Boundary:
         self._columns = len(entries[0])
         self._collapsed = {None: Collapsed([modes for row in entries for modes in row], F.t)}
         self.symbols = tuple(sorted(self._collapsed[None].symbols, key=str))
+        self.place = 0  # among all boundaries of F
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The arguments: the iterate is computed again."""
+        return _boundary, (self._F, self.place)
 
     def expression(self) -> Expr:
         """The polynomial, exact and expanded: long for orders above ten."""

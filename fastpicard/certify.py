@@ -44,7 +44,7 @@ START = 12  # rectangles along each axis to begin with
 CODES: Mapping[str, int] = {"STABLE": 1, "UNSTABLE": -1, "UNDECIDED": 0}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CertifiedChart:
     """Rectangles of two parameters with verdicts that are proved for the true equation.
 

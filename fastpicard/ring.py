@@ -32,9 +32,10 @@ import sympy
 from flint import fmpq
 from sympy import Expr
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
+from sympy.matrices.expressions.matexpr import MatrixElement
 
 from fastpicard import cosines
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, NotInFamilyError
 
 Exponent = int | Fraction
 Monomial = tuple[tuple[int, Exponent], ...]
@@ -53,9 +54,12 @@ _LARGEST_DENOMINATOR = 10_000
 
 
 def generator(expression: Expr) -> int:
-    """The number of a generator; the same expression has the same number for good."""
+    """The number of a generator; the same expression has the same number for good.  Raises NotInFamilyError."""
     number = _numbers.get(expression)
     if number is None:
+        if expression.has(MatrixElement):
+            raise NotInFamilyError(f"{expression} holds an entry of a matrix without entries, which SymPy cannot put "
+                                   "numbers into.  Use a Symbol in its place.")
         number = _numbers[expression] = len(_expressions)
         _expressions.append(expression)
         if expression is sympy.I or expression.is_Integer:

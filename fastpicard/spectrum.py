@@ -30,6 +30,7 @@ from typing import Any
 from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
 
 from fastpicard.matrix import SeriesMatrix
+from fastpicard.precision import packed, unpacked
 from fastpicard.ring import expression_of
 
 # -- structure ---------------------------------------------------------------
@@ -229,7 +230,7 @@ def _middle(z: Any) -> Any:
 # -- multipliers -------------------------------------------------------------
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Multiplier:
     """An eigenvalue of the Floquet matrix.
 
@@ -250,6 +251,13 @@ class Multiplier:
 
     def __complex__(self) -> complex:
         return complex(_middle(self.ball))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _multiplier, (packed(self.ball.real, self.ball.imag), self.on_unit_circle)
+
+
+def _multiplier(parts: Any, on_unit_circle: bool | None) -> Multiplier:
+    return Multiplier(acb(*unpacked(parts)), on_unit_circle)
 
 
 def reciprocal_multipliers(matrix: Any) -> list[Multiplier]:

@@ -33,7 +33,7 @@ from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, up
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
 from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, polynomials, shift
-from fastpicard.precision import working
+from fastpicard.precision import packed, unpacked, working
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
@@ -76,12 +76,21 @@ class Tube:
             value = arb_poly(list(self.coefficients))(t) + arb(0, arb(self.radius))
             return value if digits is None else to_number(value, digits)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        exact = packed(self.center, self.half, *self.coefficients)
+        return _tube, (self.label, self.parity, self.lo, self.hi, exact, self.radius)
+
     def points(self, count: int = 9) -> tuple[Array, Array]:
         """Points of the curve, for pictures: arrays of a and b, in floats."""
         np = numpy()
         line = np.linspace(-1, 1, count)
         return np.polynomial.polynomial.polyval(line, [float(c) for c in self.coefficients]), np.clip(
             float(self.center) + float(self.half) * line, self.lo, self.hi)
+
+
+def _tube(label: str, parity: str, lo: float, hi: float, exact: Any, radius: float) -> Tube:
+    center, half, *coefficients = unpacked(exact)
+    return Tube(label, parity, lo, hi, center, half, tuple(coefficients), radius)
 
 
 @dataclass(frozen=True)

@@ -205,7 +205,8 @@ class Scene(Arrangement):
         once to float64, which takes a ms a chain.
 
         Raises QuantityError where a Symbol has no number, or one of gravity or the support an array, DriveError where
-        the support moves by a function that is not elementary, TextError for text.
+        the support moves by a function that is not given, TextError for text.  Functions of which no Taylor series is
+        known here, ``besselj`` or ``atan``, are refused when accelerations are asked for.
 
         >>> from sympy import symbols
         >>> from lagrangian import Rod

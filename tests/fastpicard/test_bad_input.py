@@ -1092,3 +1092,12 @@ def test_what_charts_and_curves_cannot_take_is_named(ask):
     F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 10)
     with pytest.raises((BadInputError, BadTypeError, ShapeError, IndexError), match=r"(but|which|has no).*\."):
         ask(F, boundaries(F)[2])
+
+
+@pytest.mark.parametrize("build", [lambda x: cos(t * x), lambda x: x * cos(t), lambda x: sin(x) + cos(t + x)])
+def test_an_entry_of_a_matrix_without_entries_is_no_parameter(build):
+    """SymPy cannot put numbers into M[0, 0]; a Symbol can have its name."""
+    entry = sympy.MatrixSymbol("M", 2, 2)[0, 0]
+    with pytest.raises(NotInFamilyError, match="entry of a matrix"):
+        PoissonSeries(build(entry), t)
+    assert PoissonSeries(build(Symbol("M00")), t)(0) == build(Symbol("M00")).subs(t, 0)

@@ -1,6 +1,8 @@
 """Certified charts: no rectangle contradicts the truth at a point, whatever the criterion."""
 
+import pickle
 import sys
+from copy import deepcopy
 from fractions import Fraction
 from functools import cache
 
@@ -11,7 +13,16 @@ from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Rational, cos, pi, sin, sqrt
 from sympy.abc import a, b, c, h, t, v
 
-from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError, Verdict, boundaries, certify
+from fastpicard import (
+    BadInputError,
+    BadTypeError,
+    FloquetMatrix,
+    MissingParameterError,
+    Verdict,
+    boundaries,
+    certify,
+    tubes,
+)
 from fastpicard.local import LocalMap
 from fastpicard.rectangles import Rectangles
 from fastpicard.taylormodels import Models, exponents, size
@@ -357,3 +368,20 @@ def test_a_chart_may_be_asked_to_decide_all_and_at_any_real_point():
     assert chart.verdict(Rational(1, 3), sqrt(2) / 2) == Verdict.UNSTABLE
     with pytest.raises(BadTypeError, match="verdict"):
         chart.fraction("STABLE")
+
+
+def test_boundaries_tubes_and_multipliers_can_be_pickled_and_copied():
+    """Python-flint's balls themselves cannot; a chart is itself and no other."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 20)
+    found = tubes(F, (a, -0.5, 1), (b, 0, 0.5), radius=1e-8)
+    mine, other = (x.at(0.25)[0][2] for x in (found, pickle.loads(pickle.dumps(found))))
+    assert other.contains(mine) and other.rad() < 1.00001 * mine.rad()
+    for curve, other in zip(boundaries(F), pickle.loads(pickle.dumps(boundaries(F))), strict=True):
+        assert repr(other) == repr(curve) == repr(deepcopy(curve))
+        assert other({a: 0.3, b: 0.4}) == curve({a: 0.3, b: 0.4}) == deepcopy(curve)({a: 0.3, b: 0.4})
+    for multiplier in F.multiplier_enclosures({a: 0.3, b: 0.4}):
+        other = pickle.loads(pickle.dumps(multiplier))
+        assert other.ball.contains(multiplier.ball) and abs(other.digits - multiplier.digits) < 1e-6
+        assert hash(multiplier) == hash(multiplier) and multiplier == multiplier
+    chart = certify(F, (a, 0, 1), (b, 0, 1), undecided=0.1)
+    assert chart == chart and chart != pickle.loads(pickle.dumps(chart)) and hash(chart) == hash(chart)
