@@ -110,7 +110,7 @@ def long_chains() -> None:
         theta, doubt = np.concatenate([rng.uniform(-3, 3, (n, count)), nearly_straight(n, count, rng)[0]], axis=1), []
         theta[:, count // 2:count] = partly_straight(n, count - count // 2, rng)
         rates = 10.0 ** rng.uniform(-3, 4, 2 * count) * rng.normal(size=theta.shape)
-        s, c, out, variance = *np.empty((3, *theta.shape)), np.empty((2, *theta.shape))
+        s, c, out, variance = *np.empty((3, *theta.shape)), np.empty((3, *theta.shape))
         sines_of_large_joints(theta, s, c)
         for gravity in (9.81, 0.0):
             accelerate_rods(rods, rates**2, None, s, c, 0.0, gravity, np.empty((n, 4, 2 * count)), variance, out)
