@@ -59,6 +59,8 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
     ------
     BadInputError
         if the multipliers do not come in pairs (damping), with what to do.
+    BadTypeError
+        if F is no FloquetMatrix.
 
     Examples
     --------
@@ -99,7 +101,7 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
         else:
             found.append(Boundary(F, "collision", "", whole, _discriminant))
     for place, boundary in enumerate(found):
-        boundary.place = place
+        boundary._place = place
     return tuple(found)
 
 
@@ -175,11 +177,11 @@ class Boundary:
         self._columns = len(entries[0])
         self._collapsed = {None: Collapsed([modes for row in entries for modes in row], F.t)}
         self.symbols = tuple(sorted(self._collapsed[None].symbols, key=str))
-        self.place = 0  # among all boundaries of F
+        self._place = 0  # among all boundaries of F
 
     def __reduce__(self) -> tuple[Any, ...]:
         """The arguments: the iterate is computed again."""
-        return _boundary, (self._F, self.place)
+        return _boundary, (self._F, self._place)
 
     def expression(self) -> Expr:
         """The polynomial, exact and expanded: long for orders above ten."""

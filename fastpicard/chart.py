@@ -84,8 +84,6 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     1
     """
     problem = read_chart(F, x, y, fixed, modes)
-    if not problem.members:
-        raise BadInputError("a chart needs at least one mode, but modes is empty.  Leave it out for F itself.")
     across, up = _counts(points, 2, "points", "a chart needs two points along each axis")
     np, Chart = numpy(), chart_type()
     first, second = problem.axes

@@ -22,6 +22,7 @@ from fastpicard.taylormodels import Models, joined, size
 
 Array = Any
 CHUNK = 8192  # rectangles at a time
+FINEST = 2.0**-27  # of what is left: how far ahead is planned where all shall be decided
 MOST = 1 << 27  # coefficients of undecided rectangles, a gigabyte: where nothing is decided they would fill the memory
 
 
@@ -92,7 +93,7 @@ class Halving:
             rest = sum(map(self.area, chunks))
             if rest <= self.target or self.over():
                 break
-            halvings = max(1.0, 1.0 + numpy().log2(rest / max(self.target, rest / MOST)))
+            halvings = max(1.0, 1.0 + numpy().log2(rest / max(self.target, rest * FINEST)))
             new: list[Chunk] = []
             stored = 0
             for k, chunk in enumerate(chunks):

@@ -10,11 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import RLock
-from typing import Any
 
 import flint
 
-__all__ = ["packed", "unpacked", "working"]
+__all__ = ["working"]
 
 _LOCK = vars(flint).setdefault("_precision_lock", RLock())
 
@@ -29,13 +28,3 @@ def working(bits: int) -> Iterator[None]:
     """
     with _LOCK, flint.ctx.workprec(bits):
         yield
-
-
-def packed(*balls: Any) -> tuple[tuple[int, ...], ...]:
-    """Finite real balls as integers: python-flint's numbers cannot be pickled."""
-    return tuple(tuple(int(part) for half in (x.mid(), x.rad()) for part in half.man_exp()) for x in balls)
-
-
-def unpacked(numbers: tuple[tuple[int, ...], ...]) -> list[Any]:
-    """The balls again: the middles exactly, the radii rounded up in their ninth digit."""
-    return [flint.arb(flint.arf((m, e)), flint.arf((r, s))) for m, e, r, s in numbers]

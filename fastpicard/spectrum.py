@@ -30,7 +30,7 @@ from typing import Any
 from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
 
 from fastpicard.matrix import SeriesMatrix
-from fastpicard.precision import packed, unpacked
+from fastpicard.packing import packed, unpacked
 from fastpicard.ring import expression_of
 
 # -- structure ---------------------------------------------------------------

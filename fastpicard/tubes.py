@@ -33,7 +33,8 @@ from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, up
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
 from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, polynomials, shift
-from fastpicard.precision import packed, unpacked, working
+from fastpicard.packing import packed, unpacked
+from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
@@ -135,7 +136,7 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     ----------
     F : FloquetMatrix of ``y'' + (a + q(t; b)) y = 0`` with q even in t; of any order
     x : (a, lo, hi), y : (b, lo, hi)    Symbol and numbers
-    radius : float      asked of every tube, in a
+    radius : float      asked of every tube, in a; from 1e-250 to 1
     fixed : {Symbol: number} for the other parameters
 
     Raises

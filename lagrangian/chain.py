@@ -13,34 +13,20 @@ ever lighter rods of the same H and R, which all have the same mass: where two o
 from __future__ import annotations
 
 from functools import cached_property
-from itertools import accumulate
 from threading import local
 from typing import Any
 
 import numpy as np
-from sympy import Rational
 
 from .angles import LARGEST
 from .arithmetic import Arithmetic, arithmetic_of
-from .constants import (
-    LIGHT,
-    NAMES,
-    check_joints,
-    checked,
-    column,
-    even,
-    float_row,
-    joint_constants,
-    rod_row,
-    to_floats,
-)
-from .errors import NotAQuantityError, QuantityError, SceneError
+from .constants import even
+from .errors import QuantityError
 from .lanes import accelerate_rows, accelerate_together
+from .links import Links
 from .machine import has_numba, machine
-from .quantities import quantity, real_number, to_float
 from .recursion import accelerate_bobs, accelerate_rods
-from .redone import FINE, constants_in_pairs, in_pairs
-from .shaking import Shaking, shaking_of
+from .redone import FINE, in_pairs
 from .single import MODELS, ordinary
 from .states import exact_states, float_states, float_time, is_plain, shown, why_no_answer
 from .torques import exact_torques, joint_torques, joint_torques_of_many, without_limit
@@ -48,11 +34,10 @@ from .torques import exact_torques, joint_torques, joint_torques_of_many, withou
 __all__ = ["CompiledChain"]
 
 LONG = 10_000
-UNPICKLED = ("_kept", "_single", "_ordinary", "_fine", "_steady_fine")  # found again
 LONG_EVEN = 100  # even rods, from which on they are asked for their doubt only if straight somewhere
 
 
-class CompiledChain:
+class CompiledChain(Links):
     """A chain of n rods with numbers for everything; O(n) accelerations.  Immutable.
 
     ``CompiledChain(mass, length, center, gyration, gravity=9.81, support_acceleration=(0, 0), damping=None,
@@ -94,131 +79,6 @@ class CompiledChain:
     ('rods', array([0., 0.]))
     """
 
-    def __init__(self, mass: Any, length: Any, center: Any, gyration: Any, gravity: Any = 9.81,
-                 support_acceleration: Any = (0, 0), damping: Any = None, springs: Any = None, upright: bool = True,
-                 model: str | None = None) -> None:
-        columns = [column(values, name) for values, name in zip((mass, length, center, gyration), NAMES, strict=True)]
-        self._columns = checked(columns)
-        self._count = len(self._columns[0])
-        self._shape = (self._count,)
-        self._kept = local()
-        self.gravity = real_number(gravity, "gravity")
-        self.support: Shaking = shaking_of(support_acceleration)
-        self._steady = self.support.steady
-        self._joints = [joint_constants(values, name, len(self)) for values, name in
-                        ((damping, "damping"), (springs, "springs"))]
-        check_joints(self._columns[0], self._joints)
-        if not isinstance(upright, bool):
-            raise NotAQuantityError(f"upright is {upright!r}: give True (article) or False (notes).")
-        self.upright = upright
-        self.has_torques = any(values is not None for values in self._joints)
-        self.model = self._model(model)
-        self._made = True
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if "_made" in self.__dict__:
-            raise AttributeError(f"a chain does not change, and its {name} is set to {value}: make another one.")
-        super().__setattr__(name, value)
-
-    def __len__(self) -> int:
-        return self._count
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name not in UNPICKLED}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _kept=local())
-
-    def __repr__(self) -> str:
-        named = zip(("damping", "springs"), self._joints, strict=True)
-        features = [name for name, values in named if values is not None]
-        features += ["support at rest" if self.support.at_rest else "moving support"]
-        side = "upright" if self.upright else "hanging"
-        return f"CompiledChain({len(self)} {self.model}, {', '.join(features)}, {side})"
-
-    # -- what the chain is --------------------------------------------------------------------------------
-
-    @property
-    def up(self) -> int:
-        """+1 when angles are measured from the upward vertical, -1 when from the downward one."""
-        return 1 if self.upright else -1
-
-    @property
-    def damping(self) -> Any:
-        """The n damping constants as float64, or None; N m s."""
-        return self._joint_floats[0]
-
-    @property
-    def springs(self) -> Any:
-        """The n spring constants as float64, or None; N m."""
-        return self._joint_floats[1]
-
-    @property
-    def conserves_energy(self) -> bool:
-        """Whether ``energy`` is a constant of the motion: no dampers, and a support whose acceleration is constant."""
-        return self._joints[0] is None and self.support.steady
-
-    def _model(self, asked: str | None) -> str:
-        _, length, center, gyration = self._columns
-        bobs = bool(np.all(center == length) and np.all(gyration == length)) and not self.has_torques
-        if asked is None:
-            return "bobs" if bobs else "rods"
-        refuse = None if isinstance(asked, str) and asked in MODELS else f"model is {asked!r}"
-        if asked == "bobs" and not bobs:
-            refuse = "model is 'bobs', and not every rod is a point mass at its end (H = R = l) with free joints"
-        if refuse:
-            raise SceneError(f"{refuse}: give model='rods', which holds for every chain, or None for the least that "
-                             f"will do.")
-        return asked
-
-    # -- its constants in every arithmetic ----------------------------------------------------------------
-
-    @cached_property
-    def rods(self) -> Any:
-        """Rows ``m, l, I, Ic, J, It, m H, m (l - H)`` as float64, shape (n, 8), each rounded once or twice."""
-        if self._columns[0].dtype == object:
-            exact = self._exact_rods(Rational(LIGHT))
-            return np.array([[to_float(x) for x in row] for row in exact])
-        return np.stack(float_row(*self._columns), axis=1)
-
-    @cached_property
-    def bobs(self) -> Any:
-        """Rows ``m, l, m_k/m_(k-1), 1/m`` as float64, shape (n, 4)."""
-        m, l = self.rods[:, 0], self.rods[:, 1]
-        ratio = np.concatenate([[0.0], m[1:] / m[:-1]])
-        return np.ascontiguousarray(np.stack([m, l, ratio, 1 / m], axis=1))
-
-    def _exact_rods(self, light: Any) -> list[tuple[Any, ...]]:
-        columns = [[quantity(x, name) for x in column] for column, name in zip(self._columns, NAMES, strict=True)]
-        light = light * max(columns[0])
-        return [rod_row(m if m != 0 else light, l, H, R**2) for m, l, H, R in zip(*columns, strict=True)]
-
-    def rods_in(self, arithmetic: Arithmetic) -> Any:
-        """:attr:`rods` in another arithmetic, from the exact numbers; shape (n, 8)."""
-        out = np.empty((len(self), 8), dtype=object)
-        for k, row in enumerate(self._exact_rods(Rational(1, 10**400))):
-            out[k] = [arithmetic.number(x) for x in row]
-        return out
-
-    def joints_in(self, arithmetic: Arithmetic) -> list[Any]:
-        """Damping and springs, each None or shape (n,)."""
-        return [None if values is None else arithmetic.array(arithmetic.number(quantity(x, "joint")) for x in values)
-                for values in self._joints]
-
-    def pull(self, t: Any, arithmetic: Arithmetic | None = None) -> tuple[Any, Any]:
-        """``(xi'', +-(g + eta''))``, the acceleration that the first joint seems to have; m/s**2."""
-        ax, ay = self.support.at(t, arithmetic)
-        g = arithmetic.number(self.gravity) if arithmetic else to_float(self.gravity)
-        return ax, self.up * (g + ay)
-
-    @cached_property
-    def steady_pull(self) -> tuple[float, float]:
-        """The constant part of :meth:`pull` in float64, which weights are counted with; m/s**2."""
-        ax, ay = self.support.floats[0].tolist()
-        return ax, self.up * (to_float(self.gravity) + ay)
-
-    # -- accelerations ------------------------------------------------------------------------------------
-
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` at time t; rad/s**2.
 
@@ -251,7 +111,7 @@ class CompiledChain:
         if not done:
             raise QuantityError(why_no_answer(t, theta, omega))
         if self._may_lack_limit:
-            self.check_limit(t, theta, omega, self.torques(theta, omega), out)
+            self._check_limit(t, theta, omega, self.torques(theta, omega), out)
         if doubtful is not False and np.any(doubtful):
             n, doubtful = len(self), np.atleast_1d(doubtful)
             out.reshape(n, -1)[:, doubtful] = self._again(t, *(x.reshape(n, -1)[:, doubtful] for x in (theta, omega)))
@@ -262,18 +122,13 @@ class CompiledChain:
         """Whether some rods have no mass and others are turned by joints."""
         return self.has_torques and bool((self._columns[0] == 0).any())
 
-    def check_limit(self, t: Any, theta: Any, omega: Any, torques: Any, found: Any) -> None:
+    def _check_limit(self, t: Any, theta: Any, omega: Any, torques: Any, found: Any) -> None:
         """Raise QuantityError where ``theta''`` has no limit, see :func:`lagrangian.torques.without_limit`."""
         m, l = self.rods[:, :2].T.tolist()
         if np.any(without_limit(max(m), min(l), max(map(abs, self.steady_pull)), omega, torques, found)):
             raise QuantityError(f"theta'' has no limit at t = {t}, theta = {shown(theta)}: rods without mass lie "
                                 f"folded in one line, and the torques of joints beyond turn them infinitely fast.  "
                                 f"Give them a mass, or other angles.")
-
-    @cached_property
-    def _counterweighted(self) -> bool:
-        """Whether a rod has its centre beyond its near joint: then sums cancel that are positive otherwise."""
-        return bool((self.rods[:, 6] < 0).any())
 
     @cached_property
     def _unasked(self) -> bool | None:
@@ -288,35 +143,6 @@ class CompiledChain:
         for j in np.flatnonzero(left).tolist():
             found[:, j] = self._in_arithmetic(FINE, t, theta[:, j], omega[:, j], self._fine, pull).astype(float)
         return found
-
-    def fine_pull(self, t: Any) -> Any:
-        """:meth:`pull` in numbers of FINE, or in floats where the support moves by a function of them."""
-        if self._steady:
-            return self._steady_fine
-        return self.pull(t) if self.support.function is not None else self.pull(FINE.coerced(t), FINE)
-
-    @cached_property
-    def _steady_fine(self) -> Any:
-        return self.pull(FINE.coerced(0), FINE)
-
-    @cached_property
-    def _in_pairs(self) -> Any:
-        return constants_in_pairs(*self._fine)
-
-    @cached_property
-    def _fine(self) -> tuple[Any, Any]:
-        """Rods and joints as mpmath numbers of FINE."""
-        if self._columns[0].dtype == object:
-            return self.rods_in(FINE), self.joints_in(FINE)
-        number = FINE.context.mpf
-        m, l, H, R = ([number(x) for x in values.tolist()] for values in self._columns)
-        light = LIGHT * max(m)
-        rows = [rod_row(x or light, *rest) for x, *rest in zip(m, l, H, [x**2 for x in R], strict=True)]
-        return np.array(rows, dtype=object), self.joints_in(FINE)
-
-    @cached_property
-    def _joint_floats(self) -> tuple[Any, Any]:
-        return to_floats(self._joints[0]), to_floats(self._joints[1])
 
     def _one(self, theta: Any, omega: Any, ax: float, ay: float, out: Any,
              large: bool | None = None, asked: bool = False) -> tuple[bool, Any]:
@@ -350,6 +176,10 @@ class CompiledChain:
         """The machine code for one chain, None without numba, and the constants that it takes."""
         constants = self.bobs if self.model == "bobs" else self.rods
         return machine(MODELS[self.model]) if has_numba() else None, constants
+
+    @cached_property
+    def _kept(self) -> local:
+        return local()
 
     def _space(self) -> Any:
         """Room for intermediate values, kept by every thread: the system takes longer to give it than it is used."""
@@ -388,7 +218,7 @@ class CompiledChain:
             at = (slice(None), *chain)
             out[at] = self._in_arithmetic(arithmetic, t, theta[at], omega[at])
             if self._may_lack_limit:
-                self.check_limit(t, theta[at], omega[at], self.torques(theta[at], omega[at]), out[at])
+                self._check_limit(t, theta[at], omega[at], self.torques(theta[at], omega[at]), out[at])
         if not all(map(arithmetic.answers, out.flat)):
             raise QuantityError(f"theta'' is not finite at t = {t}, theta = {shown(theta)}, omega = "
                                 f"{shown(omega)}: give finite numbers, or balls that are narrower, with more bits for "
@@ -414,37 +244,3 @@ class CompiledChain:
             tau = exact_torques(theta, omega, *joints)
             accelerate_rods(rods, omega * omega, tau, s, c, ax, ay, work, None, out)
         return out
-
-    # -- energy -------------------------------------------------------------------------------------------
-
-    def energy(self, theta: Any, omega: Any) -> Any:
-        """Kinetic and potential energy in the frame of the support, float64; J.
-
-        Weights are those of gravity and of the constant part of the support's acceleration, and springs are counted.
-        A constant of the motion where :attr:`conserves_energy`.  Shapes: (n,) gives a number, (n, any) shape (any,).
-        """
-        theta, omega = float_states(theta, omega, len(self))
-        shape = (-1,) + (1,) * (theta.ndim - 1)
-        m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)
-        s, c = np.sin(theta), np.cos(theta)
-        ends = [np.cumsum(l * c * omega, axis=0), -np.cumsum(l * s * omega, axis=0)]
-        mx, my = (m * end for end in ends)
-        centres = [(mx - mG * c * omega) / m, (my + mG * s * omega) / m]
-        kinetic = (m * (centres[0] ** 2 + centres[1] ** 2) + Ic * omega**2).sum(axis=0) / 2
-        ax, ay = self.steady_pull
-        beyond = np.concatenate([np.cumsum(m[::-1], axis=0)[::-1][1:], np.zeros_like(m[:1])])
-        p = mH + l * beyond
-        potential = (p * (ax * s + ay * c)).sum(axis=0)
-        if self._joints[1] is not None:
-            delta = np.diff(theta, axis=0, prepend=0.0)
-            potential = potential + (self.springs.reshape(shape) * delta**2).sum(axis=0) / 2
-        return kinetic + potential
-
-    @cached_property
-    def energy_scale(self) -> float:
-        """``M g L``-like: the weight of every rod times the length of chain that holds it, without signs; J.
-
-        0 without weight.
-        """
-        reach = np.array(list(accumulate(self.rods[:, 1])))
-        return float((self.rods[:, 0] * reach).sum() * max(map(abs, self.steady_pull)))

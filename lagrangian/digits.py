@@ -33,7 +33,7 @@ __all__ = ["DigitRun", "Piece", "Steps", "best_order", "bits_for", "integrate_di
            "numbers", "whole_turns"]
 
 GUARD = 30  # bits beyond those asked for
-MORE = 128  # if they are too few, and then twice as many, up to 4096, or 16 for every rod
+MORE = 128  # if they are too few, and then twice as many, up to 4096, or 16 for every rod and more
 
 
 class TooFewBits(ArithmeticError):

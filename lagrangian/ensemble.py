@@ -147,7 +147,7 @@ class Ensemble:
 
     @cached_property
     def _may_lack_limit(self) -> bool:
-        """As for one chain, :meth:`lagrangian.CompiledChain.check_limit`."""
+        """Whether some rods have no mass and others are turned by joints."""
         return not self.damping is None is self.springs and bool((self._columns[0] == 0).any())
 
     def _exactly(self, t: Any, theta: Any, omega: Any) -> Any:

@@ -185,13 +185,12 @@ def accelerate_lanes(rods: Any, theta: Any, omega: Any, tau: Any, ax: Any, ay: A
                 o[VAR_W2 + j] = llr * llr * held[VAR_QN + j] + w * w
                 o[VAR_W1 + j] = llr * llr * held[VAR_PUN + j]
                 s, c = o[SIN + j], o[COS + j]
-                b = rate * rate * (mH + l * Er)
+                size = abs(mH)
+                b = rate * rate * (size + l * Er)
                 held[VAR_PUN + j], held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
                 if counter is not None:
-                    size = abs(mH)
-                    lost, b, before = (size - mH) * r, rate * rate * (size + l * Er), I * I * (r * r) * held[VAR_QU + j]
+                    lost, before = (size - mH) * r, I * I * (r * r) * held[VAR_QU + j]
                     o[LOST + j] = lost
-                    _, held[VAR_QN + j] = spread_within(s, c, a, x, y, f0, b)
                     held[VAR_QN + j] += before * (s * s)
                     held[VAR_QU + j] = (f0 * f0 + b * b + before) * (c * c)
                 if tau is not None:

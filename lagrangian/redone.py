@@ -82,4 +82,5 @@ def in_pairs(constants: Any, pull: Any, theta: Any, omega: Any) -> tuple[Any, An
     for constant, angle in zip(joints, (omega, theta), strict=True):
         if constant is not None:
             acts = acts + (abs(constant * np.diff(angle, axis=0, prepend=0.0)) / rods[:, 2]).max(axis=0)
-    return out, ~(abs(out).max(axis=0) > LEFT * acts)
+    largest = abs(out).max(axis=0)
+    return out, ~((largest > LEFT * acts) & (largest < np.inf))

@@ -77,9 +77,9 @@ def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEqua
     NotASceneError, SceneError
         Not a chain; a state of another length; times that are not monotone; a method that does not exist; an event
         that is no crossing of one of the rods.
-    QuantityError, TextError, DriveError
-        Numbers that are not finite; text; a motion that cannot be followed; a support without a Taylor series, or
-        without a finite real place and acceleration at a time.
+    QuantityError, NotAQuantityError, TextError, DriveError
+        Numbers that are not finite; more than 100,000 digits; things that are no numbers; text; a motion that cannot be
+        followed; a support without a Taylor series, or without a finite real place and acceleration at a time.
     NotInstalledError
         A method of SciPy's or heyoka's without that package.
 
