@@ -15,6 +15,7 @@ by ``-(q x - 1)**2``, and differentiation is a product, ``(1 - q x) G / x``.  So
 where a row of ``P`` is constant, as in ``x_0' = x_1``, and commutes with the integral,
 ``P I_k`` is integrated twice for ``x_1``: that is the increment of ``x_0`` after the
 next, and its derivative, formed only when asked for, the next one of ``x_1``.
+Where entries of a row of ``P`` are multiples of each other, their columns are added first.
 """
 
 from __future__ import annotations
@@ -26,12 +27,14 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from fastpicard.coordinates import Problem, Row, Term
+from fastpicard.coordinates import Problem, Term
 from fastpicard.modes import COS, SIN, Modes, mask
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 
 Rows = dict[int, Any]  # 2 * angle + kind -> fmpq_poly
 Entry = dict[int, Rows]  # monomial -> rows
+Numbers = tuple[tuple[int, Any], ...]  # (column, number)
+Parts = tuple[tuple[Numbers, tuple[Term, ...]], ...]  # sums of columns, and what each is multiplied by
 
 _FLIP = fmpq_poly([0, -1])
 
@@ -87,13 +90,19 @@ class _Step:
 
     Attributes
     ----------
+    parts : entries that are multiples of each other, as those of ``K (a + b cos t)``: their columns are added first
     once, twice : divisors of one integral and of two; None for ``twice`` where one is needed at a time
     """
 
-    row: Row
+    parts: Parts
     constant: bool
     once: Divisors
     twice: Divisors | None
+
+    @property
+    def columns(self) -> list[int]:
+        """All columns that the row takes."""
+        return [j for numbers, _ in self.parts for j, _ in numbers]
 
 
 def _steps(p: Problem) -> list[_Step]:
@@ -102,9 +111,14 @@ def _steps(p: Problem) -> list[_Step]:
                for j, _ in row}
     steps = []
     for i, row in enumerate(p.rows):
-        common = fmpq(1) if constant[i] else _content([c for _, terms in row for _, _, _, c in terms])
-        row = tuple((j, tuple((kind, k, m, _number(c / common)) for kind, k, m, c in terms)) for j, terms in row)
-        steps.append(_Step(row, constant[i], Divisors(p, 1, common),
+        found: dict[tuple[Term, ...], Numbers] = {}
+        for j, terms in row:
+            number = _content([c for *_, c in terms])
+            primitive = tuple(sorted((kind, k, m, int((c / number).p)) for kind, k, m, c in terms))
+            found[primitive] = (*found.get(primitive, ()), (j, number))
+        common = fmpq(1) if constant[i] else _content([c for numbers in found.values() for _, c in numbers])
+        parts = tuple((tuple((j, _number(c / common)) for j, c in numbers), terms) for terms, numbers in found.items())
+        steps.append(_Step(parts, constant[i], Divisors(p, 1, common),
                            Divisors(p, 2, common) if i in awaited and not constant[i] else None))
     return steps
 
@@ -130,38 +144,55 @@ def _next_column(column: Column, steps: list[_Step], last: bool) -> Column:
     integrals: dict[int, Entry] = {}
     for i, step in enumerate(steps):
         if step.twice is not None and not last:
-            integrals[i] = _integral(_product(step.row, column), step.twice)
-        elif step.constant and all(j in column.integrals for j, _ in step.row):
-            entries[i] = _product(step.row, column.integrals)
+            integrals[i] = _integral(_product(step.parts, column), step.twice)
+        elif step.constant and all(j in column.integrals for j in step.columns):
+            entries[i] = dict(_product(step.parts, column.integrals))
         else:
-            entries[i] = _integral(_product(step.row, column), step.once)
+            entries[i] = _integral(_product(step.parts, column), step.once)
     return Column(entries, integrals, column.divisors)
 
 
 # -- one row of P times one column --------------------------------------------
 
 
-def _product(row: Row, column: Column | Mapping[int, Entry]) -> Entry:
-    result: Entry = {}
-    for j, terms in row:
+def _product(parts: Parts, column: Column | Mapping[int, Entry]) -> Iterator[tuple[int, Rows]]:
+    """The rows of every monomial in turn, so that what is formed is integrated while it is at hand."""
+    sources: dict[int, list[tuple[Rows, int, int, Any]]] = {}
+    for numbers, terms in parts:
+        entry = _combination(numbers, column)
         for kind, k, own, c in terms:
-            entry = column[j] if c == 1 else _multiple(column[j], c)
             for monomial, rows in entry.items():
-                target = result.setdefault(monomial + own, {})
-                if kind != COS:
-                    _multiply_sine(target, rows, k)
-                elif k:
-                    _multiply_cosine(target, rows, k)
-                elif target:
-                    _add_rows(target, rows)
-                else:
-                    target.update(rows)
+                sources.setdefault(monomial + own, []).append((rows, kind, k, c))
+    for monomial, found in sources.items():
+        target: Rows = {}
+        for rows, kind, k, c in found:
+            if c != 1:
+                rows = _multiple(rows, c)
+            if kind != COS:
+                _multiply_sine(target, rows, k)
+            elif k:
+                _multiply_cosine(target, rows, k)
+            elif target:
+                _add_rows(target, rows)
+            else:
+                target.update(rows)
+        yield monomial, target
+
+
+def _combination(numbers: Numbers, column: Column | Mapping[int, Entry]) -> Entry:
+    """The sum of columns times numbers."""
+    if len(numbers) == 1 and numbers[0][1] == 1:
+        return column[numbers[0][0]]
+    result: Entry = {}
+    for j, c in numbers:
+        for monomial, rows in column[j].items():
+            _add_rows(result.setdefault(monomial, {}), rows if c == 1 else _multiple(rows, c))
     return result
 
 
-def _multiple(entry: Entry, c: Any) -> Entry:
+def _multiple(rows: Rows, c: Any) -> Rows:
     inverse = fmpq(1) / c  # python-flint divides a polynomial by a number faster than it multiplies by one
-    return {monomial: {key: row / inverse for key, row in rows.items()} for monomial, rows in entry.items()}
+    return {key: row / inverse for key, row in rows.items()}
 
 
 def _add_rows(target: Rows, rows: Rows) -> None:
@@ -239,9 +270,9 @@ class Divisors(dict[int, Any]):
         return found
 
 
-def _integral(product: Entry, divisors: Divisors) -> Entry:
+def _integral(product: Iterable[tuple[int, Rows]], divisors: Divisors) -> Entry:
     """The antiderivative that is zero at 0, and its derivative too, if it is the second one."""
-    found = {monomial: _integrated(rows, divisors) for monomial, rows in product.items()}
+    found = {monomial: _integrated(rows, divisors) for monomial, rows in product}
     return {monomial: rows for monomial, rows in found.items() if rows}
 
 

@@ -182,6 +182,21 @@ def test_a_row_of_constants_commutes_with_the_integral(P, rows, m):
     assert FundamentalMatrix(P, t, 3).series.diff() == system @ FundamentalMatrix(P, t, 2).series
 
 
+drives = st.sampled_from([a + b * cos(t), b * sin(2 * t) - a * cos(t) / 3, 2 * cos(t + c) - b])
+
+
+@given(st.lists(st.sampled_from([-9, -1, 0, 1, 2, Rational(3, 4)]), min_size=6, max_size=6), drives, drives)
+def test_columns_in_proportion_are_added_first(K, first, second):
+    """x_0'' = k_0 f x_0 + k_1 f x_1 + .., and x_1 with another function at one place, against the engine in series."""
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 2], [K[0] * first, K[1] * first, 0, K[2] * first],
+                [K[3] * first, K[4] * second, K[5] * first, 0]])
+    system = read_matrix(P, t)
+    packed = first_increments(system, identity_columns(4), 2).to_order(4)
+    plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(4)
+
+    assert same_increments(packed, plain, 4, 4)
+
+
 @pytest.mark.parametrize(
     "P",
     [
