@@ -24,7 +24,7 @@ from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
-from fastpicard.charted import axis_of, end_of_axis, mapping_of
+from fastpicard.charted import axis_of, mapping_of, point_of
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
@@ -301,10 +301,7 @@ class Boundary:
         axes = axis_of(x, "x"), axis_of(y, "y")
         names, box = tuple(axis.symbol for axis in axes), [(axis.lo, axis.hi - axis.lo) for axis in axes]
         exact = exact_values({**mapping_of(fixed), names[0]: 0, names[1]: 0}, self.symbols, self._F.t)
-        if not isinstance(start, tuple | list) or len(start) != 2:
-            raise BadTypeError(f"start must be a pair of numbers (x, y), but it is {start!r}.  Give a point near the "
-                               "curve.")
-        place = tuple(end_of_axis(z, "a coordinate of start") for z in start)
+        place = point_of(start)
         if not all(axis.lo <= z <= axis.hi for axis, z in zip(axes, place, strict=True)):
             raise BadInputError(f"start must be in the rectangle of x and y, but it is {start}.  Give a point there.")
         if isinstance(step, bool) or not isinstance(step, numbers.Real) or not 1e-6 <= step <= 1:

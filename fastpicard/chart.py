@@ -38,6 +38,7 @@ from fastpicard.sweeps import chart_type, in_parts
 from fastpicard.vectorise import Evaluator
 
 Array = Any
+MOST = 10**8  # points of a chart in memory, 120 bytes each while it is computed
 
 
 def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any],
@@ -66,7 +67,7 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     Raises
     ------
     BadInputError, BadTypeError, MissingParameterError
-        if the axes, points, chunks, modes or fixed values are not as described.
+        if the axes, points, chunks, modes or fixed values are not as described; more than 1e8 points without chunks.
     NotInstalledError
         without xarray; for chunks, without dask.
 
@@ -85,6 +86,9 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     """
     problem = read_chart(F, x, y, fixed, modes)
     across, up = _counts(points, 2, "points", "a chart needs two points along each axis")
+    if chunks is None and across * up > MOST:
+        raise BadInputError(f"a chart in memory has {MOST:,} points at most, but {across} times {up} are asked for.  "
+                            "Use chunks=(1000, 1000).")
     np, Chart = numpy(), chart_type()
     first, second = problem.axes
     xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)

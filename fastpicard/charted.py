@@ -252,6 +252,15 @@ def axis_of(given: Any, name: str) -> Axis:
     return Axis(symbol, lo, hi)
 
 
+def point_of(start: Any) -> tuple[float, float]:
+    """The point (x, y) to start from; raises BadTypeError, BadInputError."""
+    if not isinstance(start, tuple | list) or len(start) != 2:
+        raise BadTypeError(f"start must be a pair of numbers (x, y), but it is {start!r}.  Give a point near the "
+                           "curve.")
+    first, second = (end_of_axis(z, "a coordinate of start") for z in start)
+    return first, second
+
+
 def end_of_axis(value: Any, what: str) -> float:
     """The float nearest to one number; raises BadTypeError for a ball, BadInputError for what is no float."""
     number = exact_number(value, what)

@@ -12,8 +12,9 @@ from flint import arb, arb_mat
 from sympy import Symbol
 
 from fastpicard.boundaries import Boundary
+from fastpicard.charted import mapping_of, point_of
 from fastpicard.curves import exact_ball, resolved
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, exact_values
 from fastpicard.harmonics import harmonics
 from fastpicard.precision import working
@@ -41,7 +42,9 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     Raises
     ------
     BadInputError
-        if Newton's method does not lead to a crossing that can be proved.
+        if Newton's method does not lead to a crossing that can be proved; if ``fixed`` is not as described.
+    BadTypeError
+        if f and g are no boundaries, x and y not two Symbols, ``start`` no pair of numbers.
 
     Notes
     -----
@@ -59,10 +62,15 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     >>> float(found[a].rad()) < 1e-12
     True
     """
+    if not isinstance(f, Boundary) or not isinstance(g, Boundary):
+        raise BadTypeError(f"two boundaries cross, but they are {f!r} and {g!r}.  Take two of boundaries(F).")
+    if not isinstance(x, Symbol) or not isinstance(y, Symbol) or x == y:
+        raise BadTypeError(f"curves cross in a plane of two Symbols, but they are {x!r} and {y!r}.  Use "
+                           "crossing(f, g, a, b, (0, 1)), say.")
     names = (x, y)
-    exact = exact_values({**(fixed or {}), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
+    exact = exact_values({**mapping_of(fixed), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
     with working(192):
-        center = [exact_ball(z) for z in start]
+        center = [exact_ball(z) for z in point_of(start)]
         for part in (f, g):  # as many bits as cancel in them
             resolved(lambda *at, part=part: part._dual({**exact, **dict(zip(names, at, strict=True))}, names), center,
                      [1, 1], arb(2) ** -120)

@@ -82,7 +82,9 @@ class Tube:
         return _tube, (self.label, self.parity, self.lo, self.hi, exact, self.radius)
 
     def points(self, count: int = 9) -> tuple[Array, Array]:
-        """Points of the curve, for pictures: arrays of a and b, in floats."""
+        """Points of the curve, for pictures: arrays of a and b, in floats; ``count`` of them, an integer from 1."""
+        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
+            raise BadInputError(f"a curve is drawn through a number of points, but count is {count!r}.  Use 9.")
         np = numpy()
         line = np.linspace(-1, 1, count)
         return np.polynomial.polynomial.polyval(line, [float(c) for c in self.coefficients]), np.clip(

@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from inspect import signature
 from math import isfinite, nan
 from numbers import Complex, Real
 from typing import Any, TypeVar
@@ -197,6 +198,9 @@ def shaking_of(given: Any) -> Shaking:
     if isinstance(given, Shaking):
         return given
     if callable(given):
+        if not _takes_a_time(given):
+            raise DriveError(f"support_acceleration is a function of t that gives the pair (xi'', eta''), and "
+                             f"{given!r} does not take one argument: write it as lambda t: (0, ...).")
         return Shaking(function=_Given(given))
     try:
         ax, ay = given
@@ -204,6 +208,17 @@ def shaking_of(given: Any) -> Shaking:
         raise DriveError(f"support_acceleration is {given!r}: give the pair (xi'', eta''), or a function of t that "
                          f"gives one.") from None
     return Shaking((real_number(ax, "support_acceleration[0]"), real_number(ay, "support_acceleration[1]")))
+
+
+def _takes_a_time(function: Callable[..., Any]) -> bool:
+    """Whether it can be called with one argument, as far as Python knows."""
+    try:
+        signature(function).bind(0.0)
+    except ValueError:  # functions of C have no signature
+        return True
+    except TypeError:
+        return False
+    return True
 
 
 def shaking_of_expressions(xi: Any, eta: Any, t: Any, motion: tuple[Any, ...] = ()) -> Shaking:

@@ -442,6 +442,13 @@ def test_a_support_that_is_nowhere_or_not_smooth_is_refused(eta, times, error, w
     assert all(word in str(refusal.value) for word in words)
 
 
+@pytest.mark.parametrize("drive", [lambda: (0, 1), lambda t, x: (0, 1), lambda *, t: (0, 1)])
+def test_a_support_that_does_not_take_the_time_is_refused_at_once(drive):
+    """Without an argument, with two, with one that must be named."""
+    with pytest.raises(DriveError, match="does not take one argument: write it as lambda t"):
+        CompiledChain([1], [1], [1], [1], support_acceleration=drive)
+
+
 def test_accelerations_where_the_support_is_nowhere_are_refused():
     """A pole, the end of a root, and a logarithm that only the motion has; floats and mpmath numbers."""
     for eta, time in ((1 / (1 - t), 1), ((1 - t)**Rational(7, 2), 2), (t * log(1 - t), 2)):
