@@ -26,6 +26,7 @@ from flint import arb, arb_mat
 
 from fastpicard.charted import Charted, Exponents, Member
 from fastpicard.collapsed import Collapsed
+from fastpicard.errors import BadInputError
 from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
@@ -35,6 +36,7 @@ from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
 
 Array = Any
 Polynomials = list[dict[Exponents, Any]]
+HIGHEST = 200  # order of an iterate that a chart can need: in two parameters its terms fill 10 GB
 BITS = 160  # of the polynomials to begin with: what cancels in them, and float64
 
 
@@ -119,8 +121,17 @@ def common_bound(bounds: list[Array]) -> Harmonics:
 
 
 def order_for(majorant: Harmonics, period: Any, tol: float) -> int:
-    """The smallest order from 5 up whose a-priori remainder is at most ``tol`` in every entry."""
-    return least_order(lambda n: all(upper_float(x.upper()) <= tol for x in a_priori(majorant, period, n).entries()), 8)
+    """The smallest order from 5 up whose a-priori remainder is at most ``tol`` in every entry.
+
+    Raises BadInputError for rectangles that need one beyond HIGHEST.
+    """
+    def suffices(n: int) -> bool:
+        return all(upper_float(x.upper()) <= tol for x in a_priori(majorant, period, n).entries())
+
+    if not suffices(HIGHEST):
+        raise BadInputError(f"a chart needs an iterate of order {HIGHEST} at most, but this rectangle, so far from 0, "
+                            "needs a higher one than can be built.  Take one nearer to 0, or F.enclosure at points.")
+    return least_order(suffices, 8)
 
 
 # -- models --------------------------------------------------------------------

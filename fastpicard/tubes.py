@@ -144,7 +144,7 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     Raises
     ------
     BadInputError
-        if a is no such parameter, or the radius cannot be reached.
+        if a is no such parameter, or the radius cannot be reached; if an iterate of more than order 200 is needed.
 
     Examples
     --------

@@ -1077,6 +1077,8 @@ def test_a_series_is_not_divided_by_zero_or_by_functions_of_time(divisor):
     lambda F, B: certify(F, (a, arb("0 +/- 1"), 2), (b, 0, 1)),
     lambda F, B: certify(F, (a, 0, 1), (b, -1e-320, 1)),
     lambda F, B: certify(F, (a, -(10**400), 1), (b, 0, 1)),
+    lambda F, B: certify(F, (a, 0, 1000), (b, 0, 1)),
+    lambda F, B: tubes(F, (a, 1e100, 1e101), (b, 0, 1)),
     lambda F, B: certify(F, (a, 0, 1), (b, 0, 1), fixed=5),
     lambda F, B: certify(F, (a, 0, 1), (b, 0, 1), modes=[]),
     lambda F, B: boundaries(F.P),
