@@ -116,12 +116,14 @@ class Tubes:
     order: int
 
     def at(self, b: Any) -> list[tuple[str, str, Any]]:
-        """(label, parity, ball of a) of every boundary at one b, ascending."""
+        """(label, parity, ball of a) of every boundary in the rectangle at one b, ascending."""
         b_float = float(ball(exact_number(b, "b")))
         found: dict[tuple[str, str, float], Any] = {}
         for piece in self.pieces:
             if piece.lo <= b_float <= piece.hi:
                 value = piece(b)
+                if not (value.upper() >= self.x[1] and value.lower() <= self.x[2]):
+                    continue  # the piece leaves the rectangle
                 found[piece.label, piece.parity, round(float(value), 9)] = value
         return sorted(((label, parity, a) for (label, parity, _), a in found.items()), key=lambda item: float(item[2]))
 

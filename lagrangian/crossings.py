@@ -40,6 +40,9 @@ class Crossing:
     angle : the value, modulo a turn, as the exact number it is: ``pi/2`` is pi/2, a float is its dyadic; rad
     direction : 0 for both ways, 1 for growing angles, -1 for shrinking ones
 
+    A motion that starts on the value crosses it then, as far as floats know, with the direction that follows; one that
+    ends there has not crossed it.
+
     Raises QuantityError where one of them is none of these, TextError where the angle is text.
 
     >>> Crossing(1, 0.5).angle, Crossing(2, pi/2).angle

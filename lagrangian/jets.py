@@ -42,9 +42,9 @@ class Jet:
         return Jet(coefficients, self.elementary)
 
     def _taken(self, other: Any) -> Any:
-        """A SymPy number as one of the coefficients' kind, anything else as it is."""
+        """A SymPy number as one of the coefficients' kind, numpy's as Python's, anything else as it is."""
         if not isinstance(other, Expr):
-            return other
+            return other.item() if isinstance(other, np.generic) else other
         arithmetic = arithmetic_of(self.coefficients[0])
         return to_float(other) if arithmetic is None else arithmetic.number(other)
 
@@ -94,6 +94,8 @@ class Jet:
             power: Jet = reduce(mul, [self] * a, one)
             return power
         x = self.coefficients
+        if not isinstance(a, int):
+            a = a + 0 * x[0]  # of their kind, or a i - (k - i) would be rounded to a float
         y = [x[0] ** a]
         for k in range(1, len(x)):
             y.append(reduce(add, ((a * i - (k - i)) * x[i] * y[k - i] for i in range(1, k + 1))) / (k * x[0]))
@@ -103,7 +105,10 @@ class Jet:
         return self.__mul__(self.elementary["log"](self._taken(a) + 0 * self.coefficients[0])).exp()
 
     def __truediv__(self, other: Any) -> Jet:
-        return self.__mul__(other.__pow__(-1) if isinstance(other, Jet) else 1 / self._taken(other))
+        if isinstance(other, Jet):
+            return self.__mul__(other.__pow__(-1))
+        other = self._taken(other)  # 1 / other would be rounded to a float
+        return self._like([x / other for x in self.coefficients])
 
     def __rtruediv__(self, other: Any) -> Jet:
         return self.__pow__(-1).__mul__(other)

@@ -189,10 +189,13 @@ class Links:
         Weights are those of gravity and of the constant part of the support's acceleration, and springs are counted.
         A constant of the motion where :attr:`conserves_energy`.  Shapes: (n,) gives a number, (n, any) shape (any,).
         """
-        theta, omega = float_states(theta, omega, len(self))
-        shape = (-1,) + (1,) * (theta.ndim - 1)
+        return self.energy_of(*float_states(theta, omega, len(self)))
+
+    def energy_of(self, angle: Any, omega: Any, turns: Any = None) -> Any:
+        """:meth:`energy` of arrays of float64, where whole turns, which springs count, may be given apart."""
+        shape = (-1,) + (1,) * (angle.ndim - 1)
         m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)
-        s, c = np.sin(theta), np.cos(theta)
+        s, c = np.sin(angle), np.cos(angle)
         ends = [np.cumsum(l * c * omega, axis=0), -np.cumsum(l * s * omega, axis=0)]
         mx, my = (m * end for end in ends)
         centres = [(mx - mG * c * omega) / m, (my + mG * s * omega) / m]
@@ -202,7 +205,9 @@ class Links:
         p = mH + l * beyond
         potential = (p * (ax * s + ay * c)).sum(axis=0)
         if self._joints[1] is not None:
-            delta = np.diff(theta, axis=0, prepend=0.0)
+            delta = np.diff(angle, axis=0, prepend=0.0)
+            if turns is not None:
+                delta += 2 * np.pi * np.diff(turns, axis=0, prepend=0).astype(float)
             potential = potential + (self.springs.reshape(shape) * delta**2).sum(axis=0) / 2
         return kinetic + potential
 

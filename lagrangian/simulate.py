@@ -144,7 +144,7 @@ def _motion(system: Any, theta0: Any, omega0: Any, times: Any, accuracy: Any, me
     motion = FloatPieces(run.record, n, run.order, times) if keep else None
     found = find_crossings(motion, events, times[-1]) if motion is not None else {}
     return Trajectory(times, run.theta, run.omega, _whole(run.turns), run.angle,
-                      chain.energy(run.angle.T if chain.springs is None else run.theta.T, run.omega.T), error, accuracy,
+                      chain.energy_of(run.angle.T, run.omega.T, run.turns.T), error, accuracy,
                       method, run.steps, run.order, chain, found, motion if dense else None)
 
 
@@ -241,8 +241,7 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, given
         if digits is not None or error[-1] <= accuracy:
             break
         used += 2 + ceil(log10(error[-1] / accuracy))
-    energy = chain.energy((run.angle if chain.springs is None else run.theta).astype(float).T,
-                          run.omega.astype(float).T)
+    energy = chain.energy_of(run.angle.astype(float).T, run.omega.astype(float).T, run.turns.T)
     motion = BallPieces(run.pieces, context, exact_times) if run.pieces is not None else None
     found = find_crossings(motion, events, exact_times[-1]) if motion is not None else {}
     return Trajectory(times, run.theta, run.omega, _whole(run.turns), run.angle, energy, error, accuracy,

@@ -115,7 +115,7 @@ class Trajectory:
 
     def positions(self) -> tuple[Any, Any]:
         """Joints and tip relative to the support, x to the right and y upwards, shape (m, n + 1) each; m."""
-        theta = np.asarray(self.theta, dtype=float)
+        theta = np.asarray(self.wrapped, dtype=float)
         length = self.chain.rods[:, 1]
         x, y = np.cumsum(length * np.sin(theta), axis=1), np.cumsum(self.chain.up * length * np.cos(theta), axis=1)
         start = np.zeros((len(theta), 1))

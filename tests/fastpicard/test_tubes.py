@@ -34,13 +34,22 @@ def characteristic(at):
 def test_tubes_hold_the_characteristic_numbers(found, at):
     """By name and in order, to 25 digits."""
     numbers = [x for x in characteristic(at) if -0.5 <= x[0] <= 1.2]
-    tubes_here = [x for x in found.at(at) if -0.5 <= float(x[2]) <= 1.2]
+    tubes_here = found.at(at)
 
     assert [x[:2] for x in tubes_here] == [x[1:] for x in numbers]
     for (*_, ball), (number, *_) in zip(tubes_here, numbers, strict=True):
         with ctx.workprec(200):
             assert abs(ball.mid() - arb(number)) < 1e-25
             assert float(ball.rad()) <= 1.01e-20
+
+
+def test_what_leaves_the_rectangle_is_not_given_outside():
+    """The lowest two curves are in it at b = -1.909 and not at -1.992, in a piece over both."""
+    found = tubes(MATHIEU, (a, -1, 0.9), (b, -2, -1.85))
+
+    for at in (Rational(-1909, 1000), Rational(-249, 125)):
+        numbers = [x for x in characteristic(at) if -1 <= x[0] <= 0.9]
+        assert [x[:2] for x in found.at(at)] == [x[1:] for x in numbers]
 
 
 @pytest.mark.parametrize("terms, radius", [(2, 0.1), (3, 1e-2), (4, 1e-3), (6, 1e-4)])

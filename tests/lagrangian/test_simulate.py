@@ -6,6 +6,7 @@ import re
 from itertools import pairwise
 from pathlib import Path
 
+import flint
 import mpmath
 import numpy as np
 import pytest
@@ -440,6 +441,43 @@ def test_a_support_that_is_nowhere_or_not_smooth_is_refused(eta, times, error, w
         simulate(shaken(eta), [1], [0], times, digits=digits)
 
     assert all(word in str(refusal.value) for word in words)
+
+
+@pytest.mark.parametrize(("given", "same"), [
+    (lambda s: np.cos(3 * s) / 3, lambda s: np.cos(3 * s) * Rational(1, 3)),
+    (lambda s: s / np.int64(7) + np.divide(s, np.float64(0.1)), lambda s: s * Rational(1, 7) + s * (1 / Rational(0.1))),
+    (lambda s: (2 + s)**0.3, lambda s: (2 + s)**Rational(0.3)),
+    (lambda s: (2 + s)**-1.1, lambda s: (2 + s)**Rational(-1.1)),
+])
+def test_numbers_in_a_function_of_time_are_exact(given, same):
+    """Divisors and exponents are the numbers that they are, in balls and with digits, as SymPy's are."""
+    chains_ = [CompiledChain([1], [1], [1], [1], 1, lambda s, eta=eta: (0, eta(s))) for eta in (given, same)]
+    with flint.ctx.workprec(200):
+        one, other = (chain.acceleration(flint.arb(1), [flint.arb(1)], [flint.arb(0)])[0] for chain in chains_)
+        assert one.overlaps(other) and one.rad() < 1e-55
+
+    first, second = (simulate(chain, [1], [0], [0, 1], digits=40) for chain in chains_)
+    assert first.error[-1] < 1e-38 and abs(first.theta[-1, 0] - second.theta[-1, 0]) <= first.error[-1]
+
+
+@pytest.mark.parametrize("digits", [None, 20])
+def test_places_and_energies_after_many_turns_lose_nothing(digits):
+    """159 million turns: theta has eight digits behind the point, sines are of what is left of it."""
+    chain = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], 9.81, springs=[1, 0], upright=False)
+    motion = simulate(chain, [0.3, 1e9], [0, 1], [0, 1, 2], digits=digits)
+    x, _ = motion.positions()
+
+    assert motion.energy_drift < 1e-14
+    assert abs(np.diff(x[:, 1:]) - np.sin(motion.wrapped.astype(float))[:, 1:]).max() < 1e-15
+
+
+def test_springs_count_whole_turns():
+    """The energy of springs that are wound up, from the numbers of the motion and from its angles."""
+    chain = CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], 9.81, springs=[1, 0.5], upright=False)
+    motion = simulate(chain, [30, 100], [0, 1], [0, 1])
+
+    assert abs(motion.energy - chain.energy(motion.theta.T, motion.omega.T)).max() < 1e-11 * abs(motion.energy[0])
+    assert motion.energy[0] > 30**2 / 2 + 70**2 / 4 - 40
 
 
 @pytest.mark.parametrize("drive", [lambda: (0, 1), lambda t, x: (0, 1), lambda *, t: (0, 1)])
