@@ -181,8 +181,8 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     Raises
     ------
     BadInputError, BadTypeError, MissingParameterError
-        if the axes, modes or fixed values are not as described; if an iterate of more than order 200 is needed, for
-        Mathieu's equation where a is beyond 300.
+        if the axes, modes or fixed values are not as described; if an iterate of more than order 200 is needed, so
+        far from 0 that ``sup |P|`` is in the hundreds.
 
     Notes
     -----

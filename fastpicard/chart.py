@@ -38,7 +38,7 @@ from fastpicard.sweeps import chart_type, in_parts
 from fastpicard.vectorise import Evaluator
 
 Array = Any
-MOST = 10**8  # points of a chart in memory, 120 bytes each while it is computed
+MOST = 10**8  # points of a chart in memory, some ten floats each while it is computed
 
 
 def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any],

@@ -31,12 +31,12 @@ from fastpicard.evaluate import numpy, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
-from fastpicard.remainder import a_priori, least_order
+from fastpicard.remainder import a_priori, largest_row_sum, least_order
 from fastpicard.taylormodels import SLACK, UNIT, Models, exponents
 
 Array = Any
 Polynomials = list[dict[Exponents, Any]]
-HIGHEST = 200  # order of an iterate that a chart can need: in two parameters its terms fill 10 GB
+HIGHEST = 200  # order of an iterate: its terms in two parameters grow as the fourth power, and fill the memory
 BITS = 160  # of the polynomials to begin with: what cancels in them, and float64
 
 
@@ -129,8 +129,9 @@ def order_for(majorant: Harmonics, period: Any, tol: float) -> int:
         return all(upper_float(x.upper()) <= tol for x in a_priori(majorant, period, n).entries())
 
     if not suffices(HIGHEST):
-        raise BadInputError(f"a chart needs an iterate of order {HIGHEST} at most, but this rectangle, so far from 0, "
-                            "needs a higher one than can be built.  Take one nearer to 0, or F.enclosure at points.")
+        size = float(largest_row_sum(majorant.bound))
+        raise BadInputError(f"a chart takes an iterate of order {HIGHEST} at most, but where sup |P| is {size:.3g}, as "
+                            "in this rectangle, a higher one is needed.  Take one nearer to 0, or F.enclosure.")
     return least_order(suffices, 8)
 
 

@@ -18,6 +18,7 @@ from .arithmetic import arithmetic_of
 from .chain import CompiledChain
 from .constants import NAMES, check_damping, check_joints, checked, float_row
 from .errors import QuantityError, SceneError
+from .frozen import Frozen
 from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
 from .redone import in_pairs, rows_in_pairs
@@ -30,7 +31,7 @@ __all__ = ["Ensemble", "place"]
 SUSPICIOUS = 1e30  # rad/s**2, where there may be no answer
 
 
-class Ensemble:
+class Ensemble(Frozen):
     """Many chains of n rods, each with rods of its own, on one support; O(n) accelerations of all at once.  Immutable.
 
     ``Ensemble(mass, length, center, gyration, gravity=9.81, support_acceleration=(0, 0), damping=None, springs=None,
@@ -83,11 +84,6 @@ class Ensemble:
         self._first = self[0]
         self.gravity = self._first.gravity  # exact, once the first chain has checked it
         self._made = True
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if "_made" in self.__dict__:
-            raise AttributeError(f"a ensemble does not change, and its {name} is set to {value}: make another one.")
-        super().__setattr__(name, value)
 
     def __len__(self) -> int:
         return len(self._columns[0])

@@ -12,6 +12,7 @@ from sympy import Rational
 from .arithmetic import Arithmetic
 from .constants import LIGHT, NAMES, check_joints, checked, column, float_row, joint_constants, rod_row, to_floats
 from .errors import NotAQuantityError, SceneError
+from .frozen import Frozen
 from .quantities import quantity, real_number, to_float
 from .redone import FINE, constants_in_pairs
 from .shaking import Shaking, shaking_of
@@ -21,7 +22,7 @@ from .states import float_states
 __all__ = ["Links"]
 
 
-class Links:
+class Links(Frozen):
     """The links of a :class:`lagrangian.CompiledChain`, its parameters those of this class.  Immutable."""
 
     def __init__(self, mass: Any, length: Any, center: Any, gyration: Any, gravity: Any = 9.81,
@@ -43,11 +44,6 @@ class Links:
         self.has_torques = any(values is not None for values in self._joints)
         self.model = self._model(model)
         self._made = True
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if "_made" in self.__dict__:
-            raise AttributeError(f"a chain does not change, and its {name} is set to {value}: make another one.")
-        super().__setattr__(name, value)
 
     def __len__(self) -> int:
         return self._count
@@ -192,7 +188,10 @@ class Links:
         return self.energy_of(*float_states(theta, omega, len(self)))
 
     def energy_of(self, angle: Any, omega: Any, turns: Any = None) -> Any:
-        """:meth:`energy` of arrays of float64, where whole turns, which springs count, may be given apart."""
+        """:meth:`energy` of angles, rates and, where given, whole turns of the angles, shapes (n,) or (n, any); J.
+
+        Springs count the turns; sines of the rest lose nothing.
+        """
         shape = (-1,) + (1,) * (angle.ndim - 1)
         m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)
         s, c = np.sin(angle), np.cos(angle)
