@@ -46,11 +46,17 @@ def numpy() -> Any:
 
 # -- numbers in --------------------------------------------------------------
 
+_NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
+    (mpmath.pi, sympy.pi), (mpmath.e, sympy.E), (mpmath.euler, sympy.EulerGamma), (mpmath.catalan, sympy.Catalan),
+    (mpmath.phi, sympy.GoldenRatio), (mpmath.degree, sympy.pi / 180), (mpmath.ln2, sympy.log(2)),
+    (mpmath.ln10, sympy.log(10)),
+)
+
 
 def exact_number(value: Any, what: str) -> Any:
     """A number as ``fmpq``, ``arb`` or real SymPy constant: the exact number the argument is.
 
-    A float is the dyadic rational it stands for.
+    A float is the dyadic rational it stands for, ``mpmath.pi`` is pi.
 
     Raises
     ------
@@ -59,6 +65,9 @@ def exact_number(value: Any, what: str) -> Any:
     BadInputError
         for nan and infinities.
     """
+    for constant, exact in _NAMED:
+        if value is constant:
+            return exact
     if isinstance(value, arb):
         return _finite(value, value.is_finite(), what)
     if isinstance(value, fmpq | fmpz):

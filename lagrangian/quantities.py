@@ -14,13 +14,17 @@ from typing import Any
 import flint
 import mpmath
 import numpy as np
-from sympy import Expr, Float, I, Integer, Rational, nan, oo, zoo
+from sympy import Catalan, E, EulerGamma, Expr, Float, GoldenRatio, I, Integer, Rational, log, nan, oo, pi, zoo
 
 from .errors import NotAQuantityError, QuantityError, TextError
 
 __all__ = ["AnyMpf", "high_low", "quantity", "real_number", "refuse_mask", "refuse_text", "to_float"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
+_NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
+    (mpmath.pi, pi), (mpmath.e, E), (mpmath.euler, EulerGamma), (mpmath.catalan, Catalan), (mpmath.phi, GoldenRatio),
+    (mpmath.degree, pi / 180), (mpmath.ln2, log(2)), (mpmath.ln10, log(10)),
+)
 
 
 def refuse_text(value: Any, name: str) -> None:
@@ -76,7 +80,10 @@ def high_low(exact: Any) -> tuple[float, float]:
 
 
 def _exact(value: Any, name: str) -> Any:
-    """Numbers of every kind as exact rationals; SymPy scalars with their floats made exact."""
+    """Numbers of every kind as exact rationals or constants; SymPy scalars with their floats made exact."""
+    for constant, exact in _NAMED:
+        if value is constant:
+            return exact
     if isinstance(value, Expr) and value.is_commutative and not getattr(value, "is_Matrix", False):
         return value.xreplace({x: Rational(*_ratio(x)) for x in value.atoms(Float) if x.is_finite})
     if isinstance(value, (bool, np.timedelta64)):
@@ -88,8 +95,9 @@ def _exact(value: Any, name: str) -> Any:
         return Rational(int(value.numerator), int(value.denominator))
     if isinstance(value, AnyRational):
         return Rational(int(value.numerator), int(value.denominator))
-    if isinstance(value, AnyMpf) or (isinstance(value, (Decimal, Real)) and hasattr(value, "as_integer_ratio")):
-        if not mpmath.isfinite(value) if isinstance(value, AnyMpf) else not math.isfinite(value):
+    binary = isinstance(value, AnyMpf) and not isinstance(value, mpmath.mp.constant)
+    if binary or (isinstance(value, (Decimal, Real)) and hasattr(value, "as_integer_ratio")):
+        if not (mpmath.isfinite(value) if binary else math.isfinite(value)):
             raise QuantityError(f"{name} is {value}, which is not finite: give a finite number or a Symbol.")
         return Rational(*_ratio(value))
     raise NotAQuantityError(

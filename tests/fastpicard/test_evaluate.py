@@ -10,7 +10,7 @@ from flint import arb, ctx
 from hypothesis import given, strategies as st
 from sympy import Rational, Symbol, cos, exp, pi, sin, sqrt
 
-from fastpicard import BadInputError, FundamentalMatrix, PoissonSeries
+from fastpicard import BadInputError, BadTypeError, FundamentalMatrix, PoissonSeries
 from tests.oracles import closeness
 from tests.strategies import a, b, phi, t, w
 
@@ -151,6 +151,24 @@ def test_known_constants_have_every_digit(constant):
 
     with mpmath.workdps(80):
         assert abs(found - mpmath.mpf(constant.evalf(80)._mpf_)) < mpmath.mpf(10) ** -59
+
+
+@pytest.mark.parametrize(("constant", "exact"), [
+    (mpmath.pi, pi), (mpmath.e, sympy.E), (mpmath.euler, sympy.EulerGamma), (mpmath.catalan, sympy.Catalan),
+    (mpmath.phi, sympy.GoldenRatio), (mpmath.degree, pi / 180), (mpmath.ln2, sympy.log(2)),
+    (mpmath.ln10, sympy.log(10))], ids=str)
+def test_constants_of_mpmath_are_those_numbers_at_any_precision(constant, exact):
+    """Not their roundings at the precision that mpmath happens to have."""
+    found = PoissonSeries(a * cos(t), t).evaluate(0, {a: constant}, digits=60)
+
+    with mpmath.workdps(80):
+        assert abs(found - mpmath.mpf(exact.evalf(80)._mpf_)) < mpmath.mpf(10) ** -59
+
+
+def test_constants_of_mpmath_without_a_name_here_are_refused():
+    """As before: a rounding would have no digits beyond its own."""
+    with pytest.raises(BadTypeError, match="Apery"):
+        PoissonSeries(a * cos(t), t).evaluate(0, {a: mpmath.apery})
 
 
 @pytest.mark.parametrize("constant", [sympy.zeta(3), sympy.TribonacciConstant], ids=str)

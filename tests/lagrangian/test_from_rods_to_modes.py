@@ -1,5 +1,6 @@
 """What a user meets on the way from rods to P, tau, period and to normal modes."""
 
+import mpmath
 import pytest
 from sympy import CRootOf, Matrix, Rational, Symbol, cos, expand, pi, sin, sqrt, symbols
 
@@ -102,6 +103,15 @@ def test_only_what_the_scene_holds_is_modelled():
 def test_period_is_the_smallest_common_one(eta, period):
     """2 pi for the article's drive; uniform motion of the support is no drive at all."""
     assert linear([rod], Support(eta=eta)).first_order(omega0).period == period
+
+
+def test_constants_of_mpmath_are_those_numbers():
+    """Not their roundings at the precision that mpmath happens to have."""
+    constants = mpmath.pi, mpmath.e, mpmath.euler, mpmath.catalan, mpmath.phi, mpmath.degree, mpmath.ln2, mpmath.ln10
+    found = [Rod.bob(1, constant).length for constant in constants]
+
+    with mpmath.workdps(60):
+        assert all(abs(x.evalf(60) - +c) < mpmath.mpf(10) ** -57 for x, c in zip(found, constants, strict=True))
 
 
 def test_damped_rods_keep_their_damping():

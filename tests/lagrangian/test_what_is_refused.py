@@ -63,6 +63,7 @@ def linear(rods=(rod,), support=driven, **options):
     (lambda: Rod.uniform(None, 1), NotAQuantityError, "None"),
     (lambda: Rod.uniform(1j, 1), NotAQuantityError, "scalar"),
     (lambda: Rod.uniform(mpmath.iv.mpf(1), 1), NotAQuantityError, "ivmpf"),
+    (lambda: Rod.uniform(mpmath.apery, 1), NotAQuantityError, "Apery"),
     (lambda: Scene([]), SceneError, "positive"),
     (lambda: Scene(-2), SceneError, "positive"),
     (lambda: Scene(rod), SceneError, "list"),
