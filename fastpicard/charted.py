@@ -54,7 +54,8 @@ class Axis:
         np = numpy()
         if self.power == 1:
             return np.clip(u, self.lo, self.hi)
-        return np.clip(np.asarray(u, dtype=float) ** (1.0 / self.power), self.lo, self.hi)
+        inside = np.maximum(u, 0.0)  # edges of rectangles that begin at 0 are rounded down
+        return np.clip(inside ** (1.0 / self.power), self.lo, self.hi)
 
     def edges(self, count: int) -> Array:
         """Equal parts of the parameter's interval."""
@@ -204,9 +205,17 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     members = tuple(_member(mode, numbers, first.symbol, second.symbol) for mode in given)
     for member in members:
         missing = sorted((s for s in parameters(F) if s not in member), key=str)
+        if missing and decoupled:
+            raise MissingParameterError(f"every mode gives all parameters of P but the fixed ones, also those on the "
+                                        f"axes, and one does not give {missing[0]}.  Add {missing[0]}: ... to it.")
         if missing:
             raise MissingParameterError(f"every parameter must be on an axis or have a value, but "
                                         f"{', '.join(map(str, missing))} is neither.  Give it in fixed={{...}}.")
+        zeros = [s for row in F.P.rows for entry in row for _, _, monomial in entry
+                 for s, e in parameters_of(monomial)[0] if e < 0 and member[s][0] == 0]
+        if zeros:
+            raise BadInputError(f"P contains a negative power of {zeros[0]}, which is 0 in a mode.  Give it another "
+                                "value.")
     used = [[sum(member[s][1][k] * e for s, e in parameters_of(monomial)[0]) for member in members
              for row in F.P.rows for entry in row for _, _, monomial in entry] for k in (0, 1)]
     axes = (_with_power(first, used[0]), _with_power(second, used[1]))
@@ -283,6 +292,9 @@ def _member(mode: Mapping[Symbol, Any], numbers: Mapping[Symbol, Expr], x: Symbo
     result = {}
     for symbol, value in mode.items():
         expression = sympy.expand(as_expression(value, f"the value of {symbol}").xreplace(dict(numbers)))
+        if expression.is_zero:
+            result[symbol] = sympy.Integer(0), (0, 0)
+            continue
         terms: dict[Expr, Expr] = {}
         for term in sympy.Add.make_args(expression):
             number, monomial = term.as_independent(x, y, as_Add=False)

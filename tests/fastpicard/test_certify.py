@@ -149,6 +149,30 @@ def test_reference_points_of_one_rod(hh, vv, verdict):
     assert int(chart.verdict(Fraction(hh), Fraction(vv))) == verdict
 
 
+@pytest.mark.parametrize("power", [2, 3])
+@pytest.mark.parametrize("high", [0.7, 1, 2.5])
+def test_an_axis_from_zero_may_enter_as_a_power(power, high):
+    """Rectangles at its end are rounded down, and a negative number has no root."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - v**power * cos(t), 0]]), t, 0)
+    chart = certify(F, (a, -0.5, 1), (v, 0, high), undecided=1e-2, seconds=600)
+
+    parts = [chart.fraction(verdict) for verdict in (Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED)]
+    assert sum(parts) == pytest.approx(1, abs=1e-12) and chart.undecided <= 1e-2
+    assert (chart.verdict(0.6, 0), chart.verdict(0.6, 0.01)) == (Verdict.STABLE, Verdict.STABLE)
+    assert chart.verdict(-0.4, 0.01) == Verdict.UNSTABLE
+
+
+def test_a_mode_may_lack_a_parameter():
+    """A mode that nothing drives is stable where a is positive, but for the touching point a = 1/4 of a driven one."""
+    driven = certify(MATHIEU, (a, -1, 1), (v, 0.1, 1), modes=[{a: a, b: v}], undecided=1e-2, seconds=600)
+    both = certify(MATHIEU, (a, -1, 1), (v, 0.1, 1), modes=[{a: a, b: v}, {a: a, b: 0}], undecided=1e-2, seconds=600)
+    points = GENERATOR.uniform((-1, 0.1), (1, 1), (200, 2)).tolist()
+
+    verdicts = [(int(driven.verdict(*point)), int(both.verdict(*point)), point[0]) for point in points]
+    assert all(two == (one if place > 0 else -1) for one, two, place in verdicts if one and two)
+    assert len({two for _, two, _ in verdicts}) > 1
+
+
 def test_two_rods_from_one_scalar_matrix():
     """mu = 3 -+ 6/sqrt(7): points of the reference set, and the two-rod system itself at random points."""
     modes = [{a: -mu / v**2, b: mu * h} for mu in (3 - 6 / sqrt(7), 3 + 6 / sqrt(7))]
@@ -259,6 +283,7 @@ def test_progress_is_reported():
     ((a, 0, 1), (h, 0, 1), {}, MissingParameterError, "fixed"),
     ((h, 0, 1), (v, 0, 1), {"modes": [{a: -1 / v**2, b: h}]}, BadInputError, "positive"),
     ((h, 0, 1), (v, 1, 2), {"modes": [{a: -1 / v**2 + h, b: h}]}, BadInputError, "powers"),
+    ((a, 0, 1), (b, 0, 1), {"modes": [{b: b / 2}]}, MissingParameterError, "every mode gives all .* Add a"),
     ((a, 0, 1), (b, 0, 1), {"fixed": {a: 3}}, BadInputError, "fixed at 3 and is also on an axis"),
     ((h, 0, 1), (v, 1, 2), {"modes": [{a: -1 / v**2, b: h}], "fixed": {b: 1}}, BadInputError, "given by the modes"),
     ((a, 0, 1), (b, 0, 1), {"seconds": None}, BadTypeError, "seconds must be a number"),
@@ -269,6 +294,14 @@ def test_what_is_no_chart_is_refused(x, y, more, error, words):
     """With what would do."""
     with pytest.raises(error, match=words):
         certify(MATHIEU, x, y, **more)
+
+
+def test_a_mode_without_a_parameter_that_divides_is_refused():
+    """1/0 is no coefficient."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - cos(t) / b, 0]]), t, 0)
+
+    with pytest.raises(BadInputError, match="negative power of b, which is 0"):
+        certify(F, (a, 0, 1), (v, 0, 1), modes=[{a: a, b: 0}])
 
 
 # -- Taylor models ---------------------------------------------------------------
