@@ -20,6 +20,8 @@ from fastpicard.harmonics import harmonics
 from fastpicard.precision import working
 from fastpicard.remainder import a_priori
 
+EXPONENTS = (-60, -48, -36, -24)  # of 2: half the sides of the boxes that are tried
+
 
 def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, Any],
              fixed: Values | None = None) -> dict[Symbol, Any]:
@@ -30,7 +32,7 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
 
     Parameters
     ----------
-    f, g : Boundary, of one FloquetMatrix
+    f, g : Boundary
     x, y : Symbol
     start : (x, y)          near the crossing; what Newton's method leads to from there may be another one
     fixed : {Symbol: number}
@@ -49,7 +51,8 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     Notes
     -----
     Newton's operator in balls, ``N = c - J(X)**-1 (f, g)(c)``: if it maps the box X into itself there is one zero in
-    it.  The remainder of the iterate is in both; that of J by Cauchy, from parameters larger by 1.
+    it.  The remainders of the iterates of f and of g are in both, over the time that each takes; those of J by Cauchy,
+    from parameters larger by 1.
 
     Examples
     --------
@@ -75,18 +78,18 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
             resolved(lambda *at, part=part: part._dual({**exact, **dict(zip(names, at, strict=True))}, names), center,
                      [1, 1], arb(2) ** -120)
         for _ in range(40):
-            value, slope = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, None)
+            value, slope = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, (None, None))
             move = slope.solve(value) if slope.det() != 0 else None
             if move is None:
                 break
             center = [(c - move[k, 0]).mid() for k, c in enumerate(center)]
             if all(abs(move[k, 0]) < arb(2) ** -120 for k in (0, 1)):
                 break
-        slack = _wide_remainder(f, {**exact, **dict(zip(names, center, strict=True))})
-        for exponent in (-60, -48, -36, -24):
+        slacks = [_wide_remainder(part, {**exact, **dict(zip(names, center, strict=True))}) for part in (f, g)]
+        for exponent in EXPONENTS:
             box = [c + arb(0, arb(2) ** exponent) for c in center]
-            value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slack)
-            _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slack)
+            value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slacks)
+            _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slacks)
             try:
                 step = slope.solve(value)
             except ZeroDivisionError:
@@ -98,16 +101,17 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
                         "a FloquetMatrix of higher order.")
 
 
-def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[Any, Any], slack: Any) -> Any:
-    """Values and Jacobian of two functions."""
+def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[Any, Any], slacks: Any) -> Any:
+    """Values and Jacobian of two functions; with ``slacks``, the remainders of their entries, of the true ones."""
     rows = [part._dual(values, names, None if slack is None else [slack] * (len(part._entries) * part._columns))
-            for part in (f, g)]
+            for part, slack in zip((f, g), slacks, strict=True)]
     return arb_mat([[row[0]] for row in rows]), arb_mat([row[1:] for row in rows])
 
 
 def _wide_remainder(f: Boundary, values: dict[Any, Any]) -> Any:
-    """The remainder for all complex parameters within 1, hence of derivatives, too."""
-    wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1).upper()) for s, v in values.items()}
+    """The remainder for all complex parameters within 1 of the largest box, hence of derivatives there, too."""
+    wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1 + arb(2) ** max(EXPONENTS)).upper())
+            for s, v in values.items()}
     period = f._F.at(values)[1]
     bound = a_priori(harmonics(f._F.P, wide), period / 2 if f._half else period, f._F.n)
     return max((entry.upper() for entry in bound.entries()), default=arb(0))

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from flint import arb
 from hypothesis import given, settings, strategies as st
-from sympy import Matrix, Rational, cos, diff, sin
+from sympy import Matrix, Rational, cos, diff, eye, sin, zeros
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
@@ -142,6 +143,38 @@ def test_a_crossing_of_rough_iterates_is_not_proved(order):
 
     with pytest.raises(BadInputError, match="higher order"):
         crossing(even, odd, a, b, (0.4, 1.4))
+
+
+@pytest.mark.parametrize(("order", "height", "truth"), [(36, 4.95, 5.013156507316), (40, 3.05, 3.0611278340877),
+                                                        (60, 3.05, 3.0611278340877)])
+def test_a_crossing_counts_the_remainders_of_both_functions(order, height, truth):
+    """Collisions take the whole period, -1 even half of it, whose remainder is far smaller.
+
+    The truth is a zero of the discriminant of the coupled pair, integrated numerically (Runge-Kutta 8, 1e-13).
+    """
+    K = Matrix([[c + cos(t), Rational(1, 2), 0], [-Rational(1, 2), 4, 0], [0, 0, a]])
+    found = boundaries(FloquetMatrix(Matrix([[zeros(3), eye(3)], [-K, zeros(3)]]), t, order))
+
+    for f, g in ((found[2], found[4]), (found[4], found[2])):
+        try:
+            place = crossing(f, g, a, c, (0.25, height))
+        except BadInputError:
+            assert order < 60
+        else:
+            assert abs(place[c] - truth) < 1e-9 and place[a].overlaps(arb(1) / 4)
+
+
+@pytest.mark.parametrize("order", [14, 26])
+def test_boundaries_of_two_iterates_cross_with_a_remainder_each(order):
+    """At b = 0, where the equation has period pi; the rougher one decides whether that is proved."""
+    P = Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t), 0]])
+    even, odd = boundaries(FloquetMatrix(P, t, 40))[2], boundaries(FloquetMatrix(P, t, order))[3]
+
+    for f, g in ((even, odd), (odd, even)):
+        try:
+            assert crossing(f, g, a, b, (0.1, 0.1))[b].contains(0)
+        except BadInputError:
+            assert order == 14
 
 
 def test_damping_has_no_such_boundaries():
