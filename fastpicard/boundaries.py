@@ -24,7 +24,7 @@ from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
-from fastpicard.charted import axis_of, mapping_of, point_of
+from fastpicard.charted import axes_of, mapping_of, point_of
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
@@ -280,6 +280,10 @@ class Boundary:
                fixed: Values | None = None, step: float = 0.02) -> tuple[Any, Any]:
         """The curve through a point of it, both ways, until it leaves the rectangle or closes.
 
+        It goes straight on where it crosses itself or another one.  It ends on an edge, to 1e-10 of the sides, or where
+        it bends within 1e-10 of them, as at a cusp.  Branches nearer to each other than 1e-8 of the sides count as
+        crossing.
+
         Parameters
         ----------
         x, y : (Symbol, lo, hi)
@@ -290,17 +294,18 @@ class Boundary:
         Returns
         -------
         points, tangents : arrays, shape (m, 2) each
-            every point to 1e-12 of the sides; tangents ``(dx, dy)``, in units of the sides, of length 1.
+            every point to 1e-12 of the sides, or an ulp; tangents ``(dx, dy)``, in units of the sides, of length 1,
+            from each point to the next.  A curve that closes ends with its first point.
 
         Raises
         ------
         BadInputError, BadTypeError
-            if no boundary is found near ``start``, or that is not in the rectangle; if axes, ``fixed`` or ``step`` are
-            not as described.
+            if no boundary is found near ``start``, or that is not in the rectangle; if it goes on for more than a
+            hundred sides; if axes, ``fixed`` or ``step`` are not as described.
         """
-        axes = axis_of(x, "x"), axis_of(y, "y")
+        axes = axes_of(x, y)
         names, box = tuple(axis.symbol for axis in axes), [(axis.lo, axis.hi - axis.lo) for axis in axes]
-        exact = exact_values({**mapping_of(fixed), names[0]: 0, names[1]: 0}, self.symbols, self._F.t)
+        exact = self._fixed(fixed, names)
         place = point_of(start)
         if not all(axis.lo <= z <= axis.hi for axis, z in zip(axes, place, strict=True)):
             raise BadInputError(f"start must be in the rectangle of x and y, but it is {start}.  Give a point there.")
@@ -310,9 +315,23 @@ class Boundary:
         found = curve(lambda *place: self._dual({**exact, **dict(zip(names, place, strict=True))}, names), box, place,
                       float(step))
         if found is None:
-            raise BadInputError(f"a boundary is followed from a point near it, but none was found near {start}.  Start "
-                                "from a root().")
+            raise BadInputError("a boundary is followed from a point near it, but none was found in the rectangle "
+                                f"near {start}.  Start from a root().")
         return found
+
+    def _fixed(self, fixed: Values | None, names: tuple[Any, ...]) -> dict[Symbol, Any]:
+        """The numbers of the parameters that are not on an axis, exactly."""
+        given = mapping_of(fixed)
+        for s in names:
+            if s in given:
+                raise BadInputError(f"a parameter has one value, but {s} is fixed at {given[s]} and is also on an "
+                                    "axis.  Leave it out of fixed.")
+        exact = exact_values({**given, **dict.fromkeys(names, 0)}, self.symbols, self._F.t)
+        for s, value in exact.items():
+            if isinstance(value, arb) and not value.is_exact():
+                raise BadTypeError(f"a fixed parameter must be one number, but {s} is the ball {value}.  Give its "
+                                   "middle.")
+        return exact
 
     def __repr__(self) -> str:
         kind = f"{self.label} {self.parity}".strip()

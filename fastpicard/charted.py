@@ -188,9 +188,7 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     """
     if not isinstance(F, FloquetMatrix):
         raise BadTypeError(f"a chart is drawn of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
-    first, second = axis_of(x, "x"), axis_of(y, "y")
-    if first.symbol == second.symbol:
-        raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two.")
+    first, second = axes_of(x, y)
     numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
     decoupled = modes is not None
     given = list(modes) if decoupled else [{s: s for s in (first.symbol, second.symbol)}]
@@ -249,6 +247,14 @@ def mapping_of(fixed: Values | None) -> Values:
     if fixed is not None and not isinstance(fixed, Mapping):
         raise BadTypeError(f"fixed must map Symbols to numbers, but it is {fixed!r}.  Use fixed={{c: 1}}.")
     return fixed or {}
+
+
+def axes_of(x: Any, y: Any) -> tuple[Axis, Axis]:
+    """Two axes; raises as :func:`axis_of`, and where both are of one parameter."""
+    first, second = axis_of(x, "x"), axis_of(y, "y")
+    if first.symbol == second.symbol:
+        raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two.")
+    return first, second
 
 
 def axis_of(given: Any, name: str) -> Axis:

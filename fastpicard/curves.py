@@ -6,6 +6,8 @@ is replaced by halving, so what is found lies between the ends.
 **A curve** ``f(x, y) = 0`` by steps along the tangent ``(-f_y, f_x)`` and back onto it by Newton's method along the
 gradient, ``-f (f_x, f_y)/|grad f|**2``.  The sides of the rectangle are the units.  A step is halved where the tangent
 turns by more than ``arccos 0.98`` or the curve is not met near the step's end, and grows again where it is straight.
+Along one curve the gradient stays on the same side.  On the next branch it is on the other, so a step over to that one
+is noticed, and taken only where it is so short that the two do cross.  Nor may the gradient more than double or halve.
 
 **Precision.**  Balls say what has cancelled.  The working precision grows until the radius of f, divided by its slope,
 is a shift of the zero that does not matter (:func:`resolved`).
@@ -14,8 +16,7 @@ is a shift of the zero that does not matter (:func:`resolved`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
-from math import hypot
+from math import hypot, isfinite
 from typing import Any
 
 from flint import arb, ctx, fmpq
@@ -26,8 +27,12 @@ from fastpicard.precision import working
 
 MOST = 60  # evaluations of one zero
 MOST_BITS = 1 << 14  # of the working precision
+STRAIGHT, BESIDE = 0.98, 0.125  # a step turns by less, and the curve is met nearer to its end, in parts of its length
+CROSSING, SHORTEST = 1e-8, 1e-10  # branches so near count as crossing; no step is shorter
+MOST_SIDES = 100
 Array = Any
 Pair = tuple[float, float]
+Place = tuple[Pair, Pair]  # a point of a curve and the gradient there, in units of the sides
 Function = Callable[..., list[Any]]  # of as many balls as there are variables: the value and the derivatives by them
 Box = list[tuple[float, float]]  # lower end and length of every side
 
@@ -92,63 +97,127 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
     Returns
     -------
     points, tangents : arrays, shape (m, 2) each
-        tangents ``(dx, dy)`` in units of the sides, of length 1, all in the direction of travel.
+        tangents ``(dx, dy)`` in units of the sides, of length 1, all in the direction of travel; a curve that closes
+        ends with its first point.
+
+    Raises
+    ------
+    BadInputError
+        if it goes on for more than a hundred sides.
     """
     np = numpy()
     with working(128):
         first = _onto(function, box, [(c - lo) / w for c, (lo, w) in zip(start, box, strict=True)])
-        if first is None:
+        if first is None or not _inside(first[0]):
             return None
-        halves = [_one_way(function, box, first, sign, step) for sign in (-1.0, 1.0)]
-    track = [*reversed(halves[0]), first, *halves[1]]
+        ahead, closes = _one_way(function, box, first, 1.0, step)
+        behind = [] if closes else _one_way(function, box, first, -1.0, step)[0]
+    point, gradient = first
+    back = [(other, _times(-1.0, tangent)) for other, tangent in reversed(behind)]
+    track = [*back, (point, _along(gradient)), *ahead]
+    track += [track[0]] if closes else []
     scale, origin = np.array([w for _, w in box]), np.array([lo for lo, _ in box])
-    points = np.array([point for point, _ in track]) * scale + origin
-    tangents = np.array([tangent for _, tangent in track])
-    turned = [1.0]
-    for old, new in pairwise(tangents):
-        turned.append(turned[-1] * (1.0 if old @ new >= 0 else -1.0))
-    return points, tangents * np.array(turned)[:, None]
+    return np.array([point for point, _ in track]) * scale + origin, np.array([tangent for _, tangent in track])
 
 
-def _one_way(function: Function, box: Box, first: tuple[Pair, Pair], sign: float,
-             step: float) -> list[tuple[Pair, Pair]]:
-    point, tangent = first
-    tangent = (sign * tangent[0], sign * tangent[1])
-    track: list[tuple[Pair, Pair]] = []
+def _one_way(function: Function, box: Box, first: Place, side: float, step: float) -> tuple[list[Place], bool]:
+    """Points and directions of the curve from its first place on, and whether it comes back there.
+
+    ``side`` tells on which one the gradient is.
+    """
+    track: list[Place] = []
+    point, gradient = first
+    start = tangent = _along(gradient, side)
     length = step
-    while len(track) < 100 / step:
-        new = _onto(function, box, [p + length * d for p, d in zip(point, tangent, strict=True)])
-        turn = new[1][0] * tangent[0] + new[1][1] * tangent[1] if new else 0.0
-        if not new or abs(turn) < 0.98 or _distance(new[0], point) > 2 * length:
+    while len(track) < MOST_SIDES / step:
+        target = _moved(point, length, tangent)
+        new = _onto(function, box, target)
+        there = _side_there(new, target, length, gradient, tangent, side)
+        if new is None or there is None:
             length /= 2
-            if length < 1e-6:
-                break
+            if length < SHORTEST:
+                return track, False
             continue
-        if not all(-1e-12 <= c <= 1 + 1e-12 for c in new[0]):
-            break
-        direction = 1.0 if turn > 0 else -1.0
-        point, tangent = new[0], (direction * new[1][0], direction * new[1][1])
+        if not _inside(new[0]):
+            end = _at_edge(function, box, point, new[0])
+            return [*track, *([(end[0], _along(end[1], side))] if end else [])], False
+        side, (point, gradient) = there, new
+        tangent = _along(gradient, side)
         track.append((point, tangent))
+        if len(track) > 3 and _distance(point, first[0]) < 0.6 * length and _dot(tangent, start) > STRAIGHT:
+            is_past = _dot(_moved(first[0], -1.0, point), tangent) < 0
+            return track[:-1] if is_past else track, True
         length = min(step, 1.5 * length)
-        if len(track) > 3 and _distance(point, first[0]) < length / 2:
-            break
-    return track
+    raise BadInputError(f"a curve is followed for {MOST_SIDES} sides of the rectangle at most, and this one goes on.  "
+                        "Take a smaller rectangle.")
 
 
-def _onto(function: Function, box: Box, at: list[float]) -> tuple[Pair, Pair] | None:
-    """The point of the curve that Newton's method along the gradient finds, and the tangent there."""
+def _side_there(new: Place | None, target: Pair, length: float, gradient: Pair, tangent: Pair,
+                side: float) -> float | None:
+    """On which side the gradient is after a step to ``target``, None where the step was too long."""
+    if new is None or _distance(new[0], target) > BESIDE * length:
+        return None
+    turn = _dot(_along(new[1], side), tangent)
+    before, after = hypot(*gradient), hypot(*new[1])
+    if turn > STRAIGHT and before < 2 * after < 4 * before:
+        return side
+    return -side if turn < -STRAIGHT and length < CROSSING else None
+
+
+def _at_edge(function: Function, box: Box, point: Pair, outside: Pair) -> Place | None:
+    """Where the curve leaves the box, on its way from a point to another one outside, or None where that is the end."""
+    parts = [((float(q > 1) - p) / (q - p), k) for k, (p, q) in enumerate(zip(point, outside, strict=True))
+             if not 0 <= q <= 1]
+    part, held = min(parts)
+    target = [p + part * (q - p) for p, q in zip(point, outside, strict=True)]
+    target[held] = float(outside[held] > 1)
+    found = _onto(function, box, target, held)
+    near = found is not None and _inside(found[0]) and _distance(found[0], point) <= 2 * _distance(point, outside)
+    return found if near and found is not None and _distance(found[0], point) > SHORTEST else None
+
+
+def _onto(function: Function, box: Box, at: Sequence[float], held: int | None = None) -> Place | None:
+    """The point of the curve that Newton's method along the gradient finds, and the gradient there.
+
+    One of the coordinates may be held.
+    """
     for _ in range(12):
-        place = [exact_ball(lo + c * w) for c, (lo, w) in zip(at, box, strict=True)]
+        if not all(map(isfinite, at)):
+            return None
+        place = [exact_ball(lo) + exact_ball(c) * exact_ball(w) for c, (lo, w) in zip(at, box, strict=True)]
         f, *slope = (to_number(part, None) for part in resolved(function, place, [w for _, w in box], 1e-14))
         slope = [d * w for d, (_, w) in zip(slope, box, strict=True)]
-        size = hypot(*slope)
-        if size == 0:
+        free = [0.0 if k == held else d for k, d in enumerate(slope)]
+        size = hypot(*free)
+        if size == 0 or not isfinite(size):
             return None
-        move = [-f * d / size**2 for d in slope]
+        move = [-(f / size) * (d / size) for d in free]
         at = [c + m for c, m in zip(at, move, strict=True)]
         if hypot(*move) < 1e-12:
-            return (at[0], at[1]), (-slope[1] / size, slope[0] / size)
+            return (at[0], at[1]), (slope[0], slope[1])
     return None
+
+
+def _along(gradient: Pair, side: float = 1.0) -> Pair:
+    """The direction of the curve that has the gradient on its left, or on its right for ``side = -1``."""
+    size = side * hypot(*gradient)
+    return -gradient[1] / size, gradient[0] / size
+
+
+def _inside(point: Pair) -> bool:
+    return all(-1e-12 <= c <= 1 + 1e-12 for c in point)
+
+
+def _moved(point: Pair, length: float, direction: Pair) -> Pair:
+    return point[0] + length * direction[0], point[1] + length * direction[1]
+
+
+def _times(factor: float, v: Pair) -> Pair:
+    return factor * v[0], factor * v[1]
+
+
+def _dot(v: Pair, w: Pair) -> float:
+    return v[0] * w[0] + v[1] * w[1]
 
 
 def _distance(p: Pair, q: Pair) -> float:

@@ -80,6 +80,85 @@ def test_slopes_are_those_of_the_curve():
     assert middle.slopes[b] == pytest.approx(float((right.value - left.value) * 10**8 / 2), rel=1e-7)
 
 
+def curve_of(coefficient, label, *arguments, **more):
+    """A boundary of y'' + coefficient y, the even one of its label, followed; tangents checked on the way."""
+    F = FloquetMatrix(Matrix([[0, 1], [-coefficient, 0]]), t, 24)
+    (x, *sides), (y, *others), *start = arguments
+    points, tangents = boundaries(F)[{"+1": 0, "-1": 2}[label]].follow((x, *sides), (y, *others), *start, **more)
+    chords = np.diff(points / [sides[1] - sides[0], others[1] - others[0]], axis=0)
+    assert np.all((chords * tangents[:-1]).sum(axis=1) > 0.95 * np.hypot(*chords.T))
+    return points
+
+
+def turned(points, scale=1):
+    """How often a closed curve goes around, and whether it does close."""
+    directions = np.unwrap(np.angle(np.diff(points @ np.array([1, 1j * scale]))))
+    assert (points[0] == points[-1]).all()
+    return round(abs(directions[-1] - directions[0]) / (2 * np.pi))
+
+
+@pytest.mark.parametrize("gap", [Rational(1, 10**k) for k in (3, 5, 6, 8, 11, 12)])
+def test_a_curve_keeps_to_its_branch(gap):
+    """x**2 - y**2 = gap: the step is shortened where the other branch is near, however near."""
+    points = curve_of(Rational(1, 4) + a**2 - b**2 - gap, "-1", (a, -1, 1), (b, -1, 1), (0.5, 0.5))
+
+    assert abs(points[:, 0] ** 2 - points[:, 1] ** 2 - float(gap)).max() < 4e-12 and (points[:, 0] > 0).all()
+    assert (points[[0, -1], 0] == 1).all() and points[0, 1] * points[-1, 1] < -0.9
+
+
+def test_a_curve_goes_straight_on_where_it_crosses_another():
+    """x**2 = y**2: along the diagonal, from corner to corner."""
+    points = curve_of(Rational(1, 4) + a**2 - b**2, "-1", (a, -1, 1), (b, -1, 1), (0.5, 0.5))
+
+    assert abs(points[:, 0] - points[:, 1]).max() < 4e-12
+    assert (points[[0, -1]] ** 2 == 1).all() and points[0, 0] == -points[-1, 0]
+
+
+@pytest.mark.parametrize("thin", [1, 100, 10**4, 10**6, 10**8])
+def test_a_closed_curve_is_followed_once(thin):
+    """The ellipse x**2 + thin y**2 = a_1/4: its ends bend sharply, and a larger one lies just beyond."""
+    edge = float(mathieu_a(1, Rational(-1, 5))) / 4
+    points = curve_of(a**2 + thin * b**2 + cos(t) / 10, "-1", (a, -0.9, 0.9), (b, -0.9, 0.9), (edge**0.5, 0))
+
+    assert abs(points[:, 0] ** 2 + thin * points[:, 1] ** 2 - edge).max() < 1e-11 * max(1, thin**0.5)
+    assert turned(points, thin**0.5) == 1
+
+
+@pytest.mark.parametrize("half", [1e-5, 3e-6, 1e-8, 1e-170])
+def test_a_curve_in_a_narrow_rectangle_comes_to_its_edges(half):
+    """a_2(-2b)/4 = 1 + 5 b**2/12 + ..., and at 0, where floats are so narrow, a_0(-2b)/4 = -b**2/2 + ..."""
+    middle = 1 if half > 1e-100 else 0
+    points, _ = boundaries(MATHIEU)[0].follow((a, middle - half, middle + half), (b, -half, half), (middle, 0))
+    y = points[:, 1]
+
+    assert sorted(y[[0, -1]]) == pytest.approx([-half, half], rel=2e-10, abs=0) and len(points) > 40
+    assert abs(points[:, 0] - (1 + 5 * y**2 / 12 if middle else -(y**2) / 2)).max() < 1e-12 * half + 3e-16 * middle
+
+
+def test_a_hairpin_between_close_boundaries_is_followed():
+    """Two boundaries that nearly touch near (1/10, 0): each turns back, at the default step too, and trace = -2."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t) - sin(3 * t) / 10, 0]]), t, 44)
+    points, _ = boundaries(F)[1].follow((a, -0.6, 1), (b, -1, 1), (0.2, 0.2))
+
+    assert sorted(points[[0, -1], 1]) == [-1, 1] and points[:, 0].min() > 0.09
+    for x, y in points[::12]:
+        M = F.enclosure({a: x, b: y}, 15)
+        assert abs(float((M[0, 0] + M[1, 1]).mid()) + 2) < 1e-9
+
+
+def test_what_leaves_the_rectangle_or_is_no_number_is_not_followed():
+    """The nearest curve is outside; an axis twice, or fixed as well; a ball."""
+    f = boundaries(MATHIEU)[0]
+    for arguments, words in ((((a, -1, 3), (b, -1.9, 1.9), (3, 0)), "in the rectangle near"),
+                             (((a, -1, 3), (a, -1, 3), (0, 0), {b: 0}), "different parameters"),
+                             (((a, -1, 3), (b, -1, 1), (0, 0), {b: 0}), "also on an axis")):
+        with pytest.raises(BadInputError, match=words):
+            f.follow(*arguments)
+    with pytest.raises(BadTypeError, match="c is the ball"):
+        boundaries(FloquetMatrix(MATHIEU_P.subs(b, b * c), t, 10))[0].follow(
+            (a, -1, 3), (b, -1, 1), (0, 0), {c: arb(1, 0.1)})
+
+
 def test_a_curve_is_followed_with_its_tangents():
     """Every point of the curve through (0, 0) is a_0(-2b)/4, and tangents join neighbours."""
     points, tangents = boundaries(MATHIEU)[0].follow((a, -1, 1), (b, 0, 1), (0, 0.01))
@@ -89,7 +168,7 @@ def test_a_curve_is_followed_with_its_tangents():
     assert len(points) > 40
     for x, y in points[::10]:
         assert abs(x - float(mathieu_a(0, -2 * y)) / 4) < 2e-12
-    assert np.all(np.abs((chords * tangents[:-1]).sum(axis=1)) > 0.99)
+    assert np.all((chords * tangents[:-1]).sum(axis=1) > 0.99)
 
 
 def test_collisions_of_coupled_modes():
