@@ -7,7 +7,8 @@ is replaced by halving, so what is found lies between the ends.
 gradient, ``-f (f_x, f_y)/|grad f|**2``.  The sides of the rectangle are the units.  A step is halved where the tangent
 turns by more than ``arccos 0.98`` or the curve is not met near the step's end, and grows again where it is straight.
 Along one curve the gradient stays on the same side.  On the next branch it is on the other, so a step over to that one
-is noticed, and taken only where it is so short that the two do cross.  Nor may the gradient more than double or halve.
+is noticed, and taken only where the two are so near that they count as one: where the function has the same sign on
+both sides, or for a step as short.  Elsewhere the gradient neither changes sides nor more than doubles or halves.
 
 **Precision.**  Balls say what has cancelled.  The working precision grows until the radius of f, divided by its slope,
 is a shift of the zero that does not matter (:func:`resolved`).
@@ -16,6 +17,7 @@ is a shift of the zero that does not matter (:func:`resolved`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import hypot, isfinite
 from typing import Any
 
@@ -28,7 +30,7 @@ from fastpicard.precision import working
 MOST = 60  # evaluations of one zero
 MOST_BITS = 1 << 14  # of the working precision
 STRAIGHT, BESIDE = 0.98, 0.125  # a step turns by less, and the curve is met nearer to its end, in parts of its length
-CROSSING, SHORTEST = 1e-8, 1e-10  # branches so near count as crossing; no step is shorter
+NEAR, SHORTEST = 1e-8, 1e-10  # branches so near count as one; no step is shorter
 MOST_SIDES = 100
 Array = Any
 Pair = tuple[float, float]
@@ -105,13 +107,13 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
     BadInputError
         if it goes on for more than a hundred sides.
     """
-    np = numpy()
+    np, plane = numpy(), Plane(function, box)
     with working(128):
-        first = _onto(function, box, [(c - lo) / w for c, (lo, w) in zip(start, box, strict=True)])
+        first = plane.onto([(c - lo) / w for c, (lo, w) in zip(start, box, strict=True)])
         if first is None or not _inside(first[0]):
             return None
-        ahead, closes = _one_way(function, box, first, 1.0, step)
-        behind = [] if closes else _one_way(function, box, first, -1.0, step)[0]
+        ahead, closes = _one_way(plane, first, 1.0, step)
+        behind = [] if closes else _one_way(plane, first, -1.0, step)[0]
     point, gradient = first
     back = [(other, _times(-1.0, tangent)) for other, tangent in reversed(behind)]
     track = [*back, (point, _along(gradient)), *ahead]
@@ -120,82 +122,99 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
     return np.array([point for point, _ in track]) * scale + origin, np.array([tangent for _, tangent in track])
 
 
-def _one_way(function: Function, box: Box, first: Place, side: float, step: float) -> tuple[list[Place], bool]:
+def _one_way(plane: Plane, first: Place, side: float, step: float) -> tuple[list[Place], bool]:
     """Points and directions of the curve from its first place on, and whether it comes back there.
 
     ``side`` tells on which one the gradient is.
     """
     track: list[Place] = []
-    point, gradient = first
-    start = tangent = _along(gradient, side)
+    here = first
+    start = tangent = _along(here[1], side)
     length = step
     while len(track) < MOST_SIDES / step:
-        target = _moved(point, length, tangent)
-        new = _onto(function, box, target)
-        there = _side_there(new, target, length, gradient, tangent, side)
-        if new is None or there is None:
+        target = _moved(here[0], length, tangent)
+        new = plane.onto(target)
+        turn = _dot(_along(new[1], side), tangent) if new else 0.0
+        if new is None or not _goes_on(plane, here, new, target, turn):
             length /= 2
             if length < SHORTEST:
                 return track, False
             continue
         if not _inside(new[0]):
-            end = _at_edge(function, box, point, new[0])
+            end = plane.leave(here[0], new[0])
             return [*track, *([(end[0], _along(end[1], side))] if end else [])], False
-        side, (point, gradient) = there, new
-        tangent = _along(gradient, side)
-        track.append((point, tangent))
-        if len(track) > 3 and _distance(point, first[0]) < 0.6 * length and _dot(tangent, start) > STRAIGHT:
-            is_past = _dot(_moved(first[0], -1.0, point), tangent) < 0
+        here, side = new, side if turn > 0 else -side
+        tangent = _along(here[1], side)
+        track.append((here[0], tangent))
+        if len(track) > 3 and _distance(here[0], first[0]) < 0.6 * length and _dot(tangent, start) > STRAIGHT:
+            is_past = _dot(_moved(first[0], -1.0, here[0]), tangent) < 0
             return track[:-1] if is_past else track, True
         length = min(step, 1.5 * length)
     raise BadInputError(f"a curve is followed for {MOST_SIDES} sides of the rectangle at most, and this one goes on.  "
                         "Take a smaller rectangle.")
 
 
-def _side_there(new: Place | None, target: Pair, length: float, gradient: Pair, tangent: Pair,
-                side: float) -> float | None:
-    """On which side the gradient is after a step to ``target``, None where the step was too long."""
-    if new is None or _distance(new[0], target) > BESIDE * length:
+def _goes_on(plane: Plane, here: Place, new: Place, target: Pair, turn: float) -> bool:
+    """Whether a step from ``here``, to ``target`` and back onto the curve, has kept to its branch."""
+    length = _distance(here[0], target)
+    if abs(turn) < STRAIGHT or _distance(new[0], target) > BESIDE * length:
+        return False
+    before, after = hypot(*here[1]), hypot(*new[1])
+    if turn > 0 and before < 2 * after < 4 * before:
+        return True
+    return length < NEAR or plane.is_double(here) and plane.is_double(new)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A function in units of the sides of a rectangle."""
+
+    function: Function
+    box: Box
+
+    def at(self, point: Sequence[float]) -> tuple[Any, list[float]]:
+        """The value, a ball, and the gradient."""
+        place = [exact_ball(lo) + exact_ball(c) * exact_ball(w) for c, (lo, w) in zip(point, self.box, strict=True)]
+        f, *slope = resolved(self.function, place, [w for _, w in self.box], 1e-14)
+        return f, [to_number(d, None) * w for d, (_, w) in zip(slope, self.box, strict=True)]
+
+    def onto(self, at: Sequence[float], held: int | None = None) -> Place | None:
+        """The point of the curve that Newton's method along the gradient finds, and the gradient there.
+
+        One of the coordinates may be held.
+        """
+        for _ in range(12):
+            if not all(map(isfinite, at)):
+                return None
+            value, slope = self.at(at)
+            f, free = to_number(value, None), [0.0 if k == held else d for k, d in enumerate(slope)]
+            size = hypot(*free)
+            if size == 0 or not isfinite(size):
+                return None
+            move = [-(f / size) * (d / size) for d in free]
+            at = [c + m for c, m in zip(at, move, strict=True)]
+            if hypot(*move) < 1e-12:
+                return (at[0], at[1]), (slope[0], slope[1])
         return None
-    turn = _dot(_along(new[1], side), tangent)
-    before, after = hypot(*gradient), hypot(*new[1])
-    if turn > STRAIGHT and before < 2 * after < 4 * before:
-        return side
-    return -side if turn < -STRAIGHT and length < CROSSING else None
 
+    def is_double(self, place: Place) -> bool:
+        """Whether another branch is near: the function has the same sign on both sides."""
+        point, gradient = place
+        unit = _times(1 / hypot(*gradient), gradient)
+        below, above = (self.at(_moved(point, sign * NEAR, unit))[0] for sign in (-1, 1))
+        return bool(below * above > 0)
 
-def _at_edge(function: Function, box: Box, point: Pair, outside: Pair) -> Place | None:
-    """Where the curve leaves the box, on its way from a point to another one outside, or None where that is the end."""
-    parts = [((float(q > 1) - p) / (q - p), k) for k, (p, q) in enumerate(zip(point, outside, strict=True))
-             if not 0 <= q <= 1]
-    part, held = min(parts)
-    target = [p + part * (q - p) for p, q in zip(point, outside, strict=True)]
-    target[held] = float(outside[held] > 1)
-    found = _onto(function, box, target, held)
-    near = found is not None and _inside(found[0]) and _distance(found[0], point) <= 2 * _distance(point, outside)
-    return found if near and found is not None and _distance(found[0], point) > SHORTEST else None
-
-
-def _onto(function: Function, box: Box, at: Sequence[float], held: int | None = None) -> Place | None:
-    """The point of the curve that Newton's method along the gradient finds, and the gradient there.
-
-    One of the coordinates may be held.
-    """
-    for _ in range(12):
-        if not all(map(isfinite, at)):
+    def leave(self, point: Pair, outside: Pair) -> Place | None:
+        """Where the curve leaves the rectangle on its way to a point outside; None where it is on an edge already."""
+        parts = [((float(q > 1) - p) / (q - p), k) for k, (p, q) in enumerate(zip(point, outside, strict=True))
+                 if not 0 <= q <= 1]
+        part, held = min(parts)
+        target = [p + part * (q - p) for p, q in zip(point, outside, strict=True)]
+        target[held] = float(outside[held] > 1)
+        found = self.onto(target, held)
+        if found is None or not _inside(found[0]):
             return None
-        place = [exact_ball(lo) + exact_ball(c) * exact_ball(w) for c, (lo, w) in zip(at, box, strict=True)]
-        f, *slope = (to_number(part, None) for part in resolved(function, place, [w for _, w in box], 1e-14))
-        slope = [d * w for d, (_, w) in zip(slope, box, strict=True)]
-        free = [0.0 if k == held else d for k, d in enumerate(slope)]
-        size = hypot(*free)
-        if size == 0 or not isfinite(size):
-            return None
-        move = [-(f / size) * (d / size) for d in free]
-        at = [c + m for c, m in zip(at, move, strict=True)]
-        if hypot(*move) < 1e-12:
-            return (at[0], at[1]), (slope[0], slope[1])
-    return None
+        return found if SHORTEST < _distance(found[0], point) <= 2 * _distance(point, outside) else None
 
 
 def _along(gradient: Pair, side: float = 1.0) -> Pair:
