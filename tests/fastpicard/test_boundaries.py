@@ -137,7 +137,7 @@ def test_a_curve_in_a_narrow_rectangle_comes_to_its_edges(half):
 
 def test_a_hairpin_between_close_boundaries_is_followed():
     """Two boundaries that nearly touch near (1/10, 0): each turns back, at the default step too, and trace = -2."""
-    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t) - sin(3 * t) / 10, 0]]), t, 44)
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t) - sin(3 * t) / 10, 0]]), t, 26)
     points, _ = boundaries(F)[1].follow((a, -0.6, 1), (b, -1, 1), (0.2, 0.2))
 
     assert sorted(points[[0, -1], 1]) == [-1, 1] and points[:, 0].min() > 0.09
