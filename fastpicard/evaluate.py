@@ -282,23 +282,18 @@ MOST_DIGITS = 10_000_000
 
 def check_digits(digits: Any) -> int | None:
     """``None`` for float64, or a positive number of decimal digits."""
-    if digits is None:
-        return None
+    return None if digits is None else count_of_digits(digits, "None or a positive integer", "None for float64")
+
+
+def count_of_digits(digits: Any, kind: str = "a positive integer", least: str = "15") -> int:
+    """A positive number of decimal digits, where float64 is none of the answers; refusals name what would do."""
     if isinstance(digits, bool) or not isinstance(digits, numbers.Integral):
-        raise BadTypeError(f"digits must be None or a positive integer, but it is {digits!r}.  Use digits=50, say.")
+        raise BadTypeError(f"digits must be {kind}, but it is {digits!r}.  Use digits=50, say.")
     if digits < 1:
-        raise BadInputError(f"digits must be at least 1, but it is {digits}.  Use digits=None for float64.")
+        raise BadInputError(f"digits must be at least 1, but it is {digits}.  Use digits={least}.")
     if int(digits) > MOST_DIGITS:
         raise BadInputError(f"digits must be at most {MOST_DIGITS}, but it is {digits}.  Use fewer.")
     return int(digits)
-
-
-def count_of_digits(digits: Any) -> int:
-    """A positive number of decimal digits, where float64 is none of the answers."""
-    wanted = check_digits(digits)
-    if wanted is None:
-        raise BadTypeError("digits must be a positive integer here, but it is None.  Use digits=15.")
-    return wanted
 
 
 def refine(compute: Callable[[], list[Any]], digits: int | None) -> list[Any]:

@@ -22,7 +22,7 @@ from flint import arb
 from mpmath.libmp import dps_to_prec, from_rational
 
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import ball, exact_number
+from fastpicard.evaluate import ball, count_of_digits, exact_number
 from fastpicard.mathieu_guess import Guess, float_guess
 from fastpicard.mathieu_matrices import Matrix
 from fastpicard.precision import working
@@ -48,8 +48,8 @@ def mathieu_a(r: int, q: Any, digits: int = 15) -> Any:
     changed.
 
     Raises BadTypeError (q is text, complex or symbolic; r or digits is not an integer) and BadInputError (r
-    negative, q infinite or nan, digits < 1, a ball q too wide for ``digits``, a matrix of more than a
-    million rows).
+    negative, q infinite or nan, digits not from 1 to 10,000,000, a ball q too wide for ``digits``, a matrix of
+    more than a million rows).
 
     Speed and accuracy: see `mathieu_a_enclosure`, which does the work and gives the ball itself.
 
@@ -119,10 +119,7 @@ def _integer(value: Any, what: str) -> int:
 
 
 def _positive(digits: Any) -> int:
-    count = _integer(digits, "digits")
-    if count < 1:
-        raise BadInputError(f"digits counts significant decimal digits, at least 1; got {digits}.  Try digits=15.")
-    return count
+    return count_of_digits(_integer(digits, "digits"))
 
 
 def _is_wide(q: Any) -> bool:

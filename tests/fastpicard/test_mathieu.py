@@ -424,8 +424,8 @@ def test_tie_broken_only_in_the_31st_decimal_is_rounded_right():
 
 @pytest.mark.parametrize("r, q, digits, word", [
     (-1, 1, 15, "-1"), (0, float("nan"), 15, "nan"), (0, float("inf"), 15, "inf"), (0, sympy.oo, 15, "oo"),
-    (0, mpmath.nan, 15, "nan"), (0, 1, 0, "0"), (0, 1, -3, "-3"), (0, 10**40, 15, "rows"), (10**160, 1, 15, "rows"),
-    (3, arb(2, 0.001), 15, "ball"), (0, arb(0, 1e-30), 15, "ball"),
+    (0, mpmath.nan, 15, "nan"), (0, 1, 0, "0"), (0, 1, -3, "-3"), (0, 1, 10**9, "at most 10000000"),
+    (0, 10**40, 15, "rows"), (10**160, 1, 15, "rows"), (3, arb(2, 0.001), 15, "ball"), (0, arb(0, 1e-30), 15, "ball"),
 ])
 def test_question_without_an_answer_is_refused_with_its_value(r, q, digits, word):
     """The value at fault stands in the message."""
@@ -441,7 +441,6 @@ def test_order_zero_has_no_odd_solution():
 
 @pytest.mark.parametrize("q", [
     "1", "__import__('os')", 1j, mpmath.mpc(1), acb(1), sympy.Symbol("q"), sympy.I, None, True, [1], np.array([1.0]),
-    mpmath.pi,
 ], ids=repr)
 def test_q_that_is_no_real_number_is_refused_by_kind(q):
     """Text, complex and symbolic values and containers are not numbers q."""
