@@ -98,16 +98,19 @@ def to_digits(compute: Callable[[], Any], digits: int, is_box: bool = False, str
 
 
 def shortfall(matrix: Any, wanted: int) -> float:
-    """How many bits are missing until every radius is below ``2**-wanted`` of its entry or ``4**-wanted`` of all."""
+    """How many bits are missing until every radius is below ``2**-wanted`` of its entry or ``4**-wanted`` of all.
+
+    Infinity where nothing is known: no entry is told from 0.
+    """
     entries = matrix.entries()
     if not all(x.is_finite() for x in entries):
         return math.inf
-    largest = max(_exponent(abs(x).upper()) for x in entries)
+    largest = max(_exponent(x.abs_lower()) for x in entries)
     worst = -math.inf
     for x in entries:
         if x.rad() == 0:
             continue
-        scale = max(_exponent(abs(x).lower()), largest - wanted)
+        scale = max(_exponent(x.abs_lower()), largest - wanted)
         worst = max(worst, _exponent(x.rad()) - scale + wanted + 1)
     return worst
 
@@ -135,16 +138,21 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones.
     strides = speed / 0.25 if P.is_wide else max(speed / (9 + ctx.prec / 50), turn / 3.2)
     if not strides <= MOST_PIECES:
-        raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} takes more than {MOST_PIECES} steps: the "
-                            f"coefficients reach {max(map(_upper, P.bound.entries())):.3g}.  Take a smaller period.")
+        largest = max(P.bound.entries())
+        raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} can take {MOST_PIECES} steps at most, but "
+                            f"the coefficients reach {largest.str(3, radius=False)}.  Take smaller ones or a smaller "
+                            "period.")
     pieces = max(1, math.ceil(strides))
-    step = length / pieces
-    result = None
-    for k in range(pieces):
-        if result is None or not P.is_constant:
-            once = _step(P.shifted(start + step * k), step, scales, ctx.prec + pieces.bit_length() + 4)
-        result = once if result is None else once * result
-    return result
+    step, bits = length / pieces, ctx.prec + pieces.bit_length() + 4
+
+    def between(low: int, high: int) -> Any:
+        """The steps from low to high, as a tree: each product that a rotation passes through may cost half a bit."""
+        if high - low == 1:
+            return _step(P.shifted(start + step * low), step, scales, bits)
+        middle = (low + high) // 2
+        return between(middle, high) * between(low, middle)
+
+    return between(0, 1) ** pieces if P.is_constant else between(0, pieces)
 
 
 def _upper(x: Any) -> float:
@@ -154,8 +162,8 @@ def _upper(x: Any) -> float:
 def _speed(P: Harmonics, scales: list[int]) -> float:
     """The norm of the balanced ``P``."""
     bound = P.bound
-    rows = [sum(_upper(bound[i, j]) * 2.0 ** (scales[j] - scales[i]) for j in range(P.size)) for i in range(P.size)]
-    return max(rows)
+    return max(sum(_upper(bound[i, j] * arb(2) ** (scales[j] - scales[i])) for j in range(P.size))
+               for i in range(P.size))
 
 
 def _balance(P: Harmonics) -> list[int]:
