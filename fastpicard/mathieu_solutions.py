@@ -7,7 +7,10 @@ The basic solutions (DLMF 28.2(ii)) are the even ``w_I`` with ``w_I(0) = 1, w_I'
     cos(pi nu) = w_I(pi; a, q)                                              (DLMF 28.2.16)
 
 fixes the exponent ``nu`` up to its sign and even integers.  Real ``nu`` means bounded solutions; here
-``0 <= Re nu <= 1`` and ``Im nu >= 0``.
+``0 <= Re nu <= 1`` and ``Im nu >= 0``.  Half the way is enough: the other half mirrors it, and the Wronskian
+``w_I w_II' - w_I' w_II = 1`` leaves, without an inverse that would lose digits where solutions grow,
+
+    w_I(pi) = w_I w_II' + w_I' w_II  at pi/2  =  2 w_I w_II' - 1.
 """
 
 from __future__ import annotations
@@ -17,10 +20,11 @@ from typing import Any
 from flint import acb, arb, arb_mat
 from mpmath.libmp import dps_to_prec
 
-from fastpicard.enclosure import over_period, to_digits, transition
+from fastpicard.enclosure import shortfall, to_digits, transition
 from fastpicard.errors import BadInputError
-from fastpicard.evaluate import ball, count_of_digits, exact_number, to_complex, to_number
+from fastpicard.evaluate import EXTRA_BITS, ball, count_of_digits, exact_number, to_complex, to_number
 from fastpicard.harmonics import Harmonics
+from fastpicard.parameters import is_box
 from fastpicard.precision import working
 
 MOST_TURNS = 2**63 - 1
@@ -29,7 +33,8 @@ MOST_TURNS = 2**63 - 1
 def mathieu_c(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
     """``w_I(z; a, q)``, the even solution with value 1 at ``z = 0``: an mpf with all ``digits`` right.
 
-    At ``a = mathieu_a(r, q)`` it is periodic, ``ce_r(z, q) / ce_r(0, q)``.
+    At ``a = mathieu_a(r, q)`` it is periodic, ``ce_r(z, q) / ce_r(0, q)``.  A value that 4096 bits beyond the digits
+    cannot tell from 0 is returned as 0, so that ``cos(pi/2)`` is.
 
     Parameters
     ----------
@@ -41,7 +46,7 @@ def mathieu_c(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
     BadTypeError
         for text, symbols, complex numbers.
     BadInputError
-        for nan and infinities, and for balls too wide for the digits.
+        for nan and infinities, balls too wide for the digits, and numbers that take more than a million steps.
 
     Examples
     --------
@@ -78,14 +83,22 @@ def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
     >>> print(mpmath.nstr(mathieu_exponent(1, 1, 12), 12))  # in the first zone of instability
     (1.0 + 0.453453534347j)
     """
-    wanted, numbers = count_of_digits(digits), _numbers(a, q)
+    wanted, numbers = count_of_digits(digits), _numbers(a=a, q=q)
+
+    def once() -> Any:
+        half = transition(_equation(*map(ball, numbers.values())), arb(0), arb.pi() / 2)
+        return arb_mat([[2 * half[0, 0] * half[1, 1] - 1, 1]])  # next to 1, as a cosine of 0 has no relative digits
+
     tried = wanted + 5
     while tried <= 8 * wanted + 200:
-        matrix = over_period(lambda: (_equation(*map(ball, numbers)), arb.pi()), 1, tried)
+        found = to_digits(once, tried, is_box(numbers), strict=False)
         with working(dps_to_prec(tried) + 32):
-            nu = _exponent(matrix[0, 0])
+            nu = _exponent(found[0, 0])
             if nu is not None and _is_known(nu.real, wanted) and _is_known(nu.imag, wanted):
                 return to_complex(nu, wanted)
+        if shortfall(found, dps_to_prec(tried)) > 0:
+            raise BadInputError(f"{wanted} digits of nu cannot be had: at a = {a}, q = {q} its cos(pi nu) lies in "
+                                f"{found[0, 0].str(5)}.  Give numbers, narrower balls, or fewer digits.")
         tried *= 2
     raise BadInputError(f"a = {a} cannot be told from a characteristic number at q = {q}: w_I(pi) is +-1 to "
                         f"{tried // 2} digits.  On the boundary nu is 0 or 1.")
@@ -105,13 +118,21 @@ def _exponent(cosine: Any) -> Any:
 
 
 def _solution(a: Any, q: Any, z: Any, digits: Any, column: int) -> Any:
-    wanted, (x, y, end) = count_of_digits(digits), _numbers(a, q, z)
+    wanted, numbers = count_of_digits(digits), _numbers(a=a, q=q, z=z)
+    least = arb(2) ** -(dps_to_prec(wanted) + EXTRA_BITS)
 
     def once() -> Any:
-        return arb_mat([[_fundamental(_equation(ball(x), ball(y)), ball(end))[0, column]]])
+        x, y, end = map(ball, numbers.values())
+        end = _settled(end, least)
+        value = _fundamental(_equation(x, y), end)[0, column]
+        return arb_mat([[_settled(value, least * end.abs_lower())]])  # w_II is like z where z is small
 
-    is_box = any(isinstance(value, arb) and not value.is_exact() for value in (x, y, end))
-    return to_number(to_digits(once, wanted + 2, is_box)[0, 0], wanted)
+    return to_number(to_digits(once, wanted + 2, is_box(numbers))[0, 0], wanted)
+
+
+def _settled(x: Any, least: Any) -> Any:
+    """0 in place of a ball around 0 with a radius below the least."""
+    return arb(0) if x.contains(0) and x.rad() < least else x
 
 
 def _fundamental(P: Harmonics, z: Any) -> Any:
@@ -133,5 +154,5 @@ def _equation(a: Any, q: Any) -> Harmonics:
     return Harmonics(2, {(0, 1): [(zero, arb(1), zero)], (1, 0): [(zero, -a, zero), (arb(2), 2 * q, zero)]})
 
 
-def _numbers(*values: Any) -> tuple[Any, ...]:
-    return tuple(exact_number(value, name) for value, name in zip(values, ("a", "q", "z"), strict=False))
+def _numbers(**values: Any) -> dict[str, Any]:
+    return {name: exact_number(value, name) for name, value in values.items()}

@@ -1,13 +1,14 @@
 """Solutions and exponents of Mathieu's equation: against SciPy where it is right, mpmath and closed forms."""
 
 import math
+from fractions import Fraction
 
 import mpmath
 import pytest
 from flint import arb
 from hypothesis import given, settings, strategies as st
 from scipy.special import mathieu_cem, mathieu_sem
-from sympy import Symbol
+from sympy import Rational, Symbol, cos, pi, sin, sqrt
 
 from fastpicard import BadInputError, BadTypeError, mathieu_a, mathieu_b, mathieu_c, mathieu_exponent, mathieu_s
 
@@ -58,6 +59,32 @@ def test_at_zero_they_are_one_and_nothing():
     assert mathieu_c(2, 3, 0) == 1 and mathieu_s(2, 3, 0) == 0
 
 
+@pytest.mark.parametrize(
+    "value, a, z",
+    [
+        (mathieu_c, 1, pi / 2),
+        (mathieu_c, pi**2 / 4, -1),
+        (mathieu_c, mpmath.pi, sqrt(pi) / 2),
+        (mathieu_s, 1, pi),
+        (mathieu_s, 100, -(10**6) * pi),
+        (mathieu_s, 1, sin(1) ** 2 + cos(1) ** 2 - 1),
+    ],
+)
+@pytest.mark.parametrize("digits", [1, 30])
+def test_zeros_are_zero(value, a, z, digits):
+    """No digits tell cos(pi/2) from 0; 4096 bits beyond them settle it, also for an argument SymPy leaves as it is."""
+    assert value(a, 0, z, digits) == 0
+
+
+@pytest.mark.parametrize("exponent", [20, 2000])
+def test_a_small_value_is_not_taken_to_be_zero(exponent):
+    """w_II(z) = z + O(z**3) at 1e-2000, though that is more than 4096 bits below 1; 1e-900 from a zero of w_I."""
+    small = Fraction(1, 10**exponent)
+    assert mathieu_s(1, 1, small) == mpmath.mpf(small.numerator) / small.denominator
+    near = mathieu_c(1, 0, pi / 2 - Rational(1, 10**900), 5)
+    assert mpmath.nstr(near, 5) == "1.0e-900"
+
+
 @settings(max_examples=30)
 @given(st.floats(0.1, 30).filter(lambda a: not math.sqrt(a).is_integer()))  # squares are on a boundary
 def test_without_q_they_are_circular(a):
@@ -89,6 +116,41 @@ def mpmath_pi(digits):
     """pi as a number with so many digits."""
     with mpmath.workdps(digits):
         return +mpmath.pi
+
+
+@pytest.mark.parametrize("a, q, about", [(-(10**6), 1, 1000j), (10**6 + 1, 1, None), (0, 10**5, None)])
+def test_the_exponent_is_found_where_solutions_grow_or_turn_fast(a, q, about):
+    """cos(pi nu) = w_I(pi); deep in the first zone nu is near i sqrt(-a)."""
+    nu = mathieu_exponent(a, q, 12)
+    value = mathieu_c(a, q, pi, 12)
+    with mpmath.workdps(12):
+        assert about is None or abs(nu - about) < 1e-3
+        assert abs(mpmath.cospi(nu) - value) < 1e-5 * abs(value)
+
+
+def test_balls_with_a_radius_have_the_digits_that_they_fix():
+    """nu of every point of a ball to 5 digits, or a refusal that shows what is known."""
+    for narrow in ((arb(1, 1e-10), 1), (1, arb(1, 1e-12))):
+        assert mpmath.nstr(mathieu_exponent(*narrow, 5), 5) == "(1.0 + 0.45345j)"
+    for wide in ((arb(1, 1e-2), 1), (1, arb(1, 1e-2)), (arb(4, 1e-2), 0), (arb(3, 10), 1)):
+        with pytest.raises(BadInputError, match=r"5 digits of nu cannot be had: at a = .* lies in .*narrower balls"):
+            mathieu_exponent(*wide, 5)
+
+
+@pytest.mark.parametrize("huge", [10**100000, mpmath.mpf("-1e100000")], ids=["int", "mpf"])
+def test_parameters_beyond_floats_are_named(huge):
+    """They would take too many steps."""
+    for ask in (lambda: mathieu_c(huge, 1, 1), lambda: mathieu_s(1, huge, 1), lambda: mathieu_exponent(1, huge)):
+        with pytest.raises(BadInputError, match=r"\d+ steps at most, but the coefficients reach \d.00e\+100000"):
+            ask()
+
+
+def test_digits_that_are_none_are_refused_with_digits_that_would_do():
+    """None is no answer here, so that no message may say so."""
+    for digits, error in ((0, BadInputError), (None, BadTypeError), ("15", BadTypeError)):
+        for ask in (lambda d: mathieu_c(1, 1, 1, d), lambda d: mathieu_exponent(1, 1, d)):
+            with pytest.raises(error, match=f"^digits must be .* but it is {digits!r}.  Use digits=(15|50, say)."):
+                ask(digits)
 
 
 def test_a_boundary_has_no_exponent_of_its_own():
