@@ -8,7 +8,7 @@ import mpmath
 import pytest
 import sympy
 from hypothesis import given, strategies as st
-from sympy import I, Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt, tan
+from sympy import I, Matrix, Rational, S, Symbol, acos, asin, atan, atan2, cos, cosh, exp, pi, sin, sinh, sqrt, tan
 
 from fastpicard import FloquetMatrix, PoissonSeries, new_integrate, product_to_sum
 from tests.oracles import closeness, value_by_sympy, vanishes
@@ -105,6 +105,17 @@ def test_equal_series_have_equal_hashes_whatever_made_them(f, g):
         (t / sqrt(a + b), sqrt(a + b) * t / (a + b)),
         (cos(t * a / (a + b) + t * b / (a + b)), cos(t)),
         (cos(t + phi) / cos(phi), cos(t) - tan(phi) * sin(t)),
+        (cos(t + atan(2)), (cos(t) - 2 * sin(t)) / sqrt(5)),
+        (cos(t + acos(Rational(1, 3))), cos(t) / 3 - 2 * sqrt(2) / 3 * sin(t)),
+        (cos(t + atan(a)), (cos(t) - a * sin(t)) / sqrt(1 + a**2)),
+        (cos(w * t + asin(a)), cos(w * t) * sqrt(1 - a**2) - a * sin(w * t)),
+        (t * cos(t + atan2(b, a)), t * (a * cos(t) - b * sin(t)) / sqrt(a**2 + b**2)),
+        (cos(t + 2 * atan(2) + phi), (-3 * cos(t + phi) - 4 * sin(t + phi)) / 5),
+        (cos(t + atan(a) + phi), (cos(t + phi) - a * sin(t + phi)) / sqrt(1 + a**2)),
+        (cos(t + atan(2) + atan(Rational(1, 2))), -sin(t)),
+        (cos(t + atan(a) + a * phi / (a + b) + b * phi / (a + b)), cos(t + atan(a) + phi)),
+        ((cos(t + phi) * cos(t + atan(2))) ** 2, (cos(t + phi) * (cos(t) - 2 * sin(t))) ** 2 / 5),
+        (cos(t + I * a), cos(t) * cosh(a) - I * sin(t) * sinh(a)),
     ],
     ids=str,
 )
@@ -281,6 +292,17 @@ def test_shifting_the_time_forth_and_back_changes_nothing(f, by):
         (tan(1) * cos(1), sin(1)),
         (cos(t * exp(1000 * a) * exp(b)), cos(t * exp(1000 * a + b))),
         (cos(t + phi) / cos(phi), cos(t) - tan(phi) * sin(t)),
+        (cos(t + atan(2)), (cos(t) - 2 * sin(t)) / sqrt(5)),
+        (cos(t + acos(Rational(1, 3))), cos(t) / 3 - 2 * sqrt(2) / 3 * sin(t)),
+        (cos(t + atan(a)), (cos(t) - a * sin(t)) / sqrt(1 + a**2)),
+        (cos(w * t + asin(a)), cos(w * t) * sqrt(1 - a**2) - a * sin(w * t)),
+        (t * cos(t + atan2(b, a)), t * (a * cos(t) - b * sin(t)) / sqrt(a**2 + b**2)),
+        (cos(t + 2 * atan(2) + phi), (-3 * cos(t + phi) - 4 * sin(t + phi)) / 5),
+        (cos(t + atan(a) + phi), (cos(t + phi) - a * sin(t + phi)) / sqrt(1 + a**2)),
+        (cos(t + atan(2) + atan(Rational(1, 2))), -sin(t)),
+        (cos(t + atan(a) + a * phi / (a + b) + b * phi / (a + b)), cos(t + atan(a) + phi)),
+        ((cos(t + phi) * cos(t + atan(2))) ** 2, (cos(t + phi) * (cos(t) - 2 * sin(t))) ** 2 / 5),
+        (cos(t + I * a), cos(t) * cosh(a) - I * sin(t) * sinh(a)),
     ],
     ids=str,
 )
@@ -307,6 +329,13 @@ def test_equal_expressions_are_equal_series(left, right):
         (sin(t * b / (a - b) - t * a / (a - b)), sin(t)),
         (cos(t * exp(a) * exp(b)), cos(t * exp(a - b))),
         (tan(phi) * cos(phi) * t, cos(phi) * t),
+        (cos(t + atan(2)), (cos(t) + 2 * sin(t)) / sqrt(5)),
+        (cos(t + atan(2)), cos(t + atan(3))),
+        (cos(t + atan(a)), (cos(t) - b * sin(t)) / sqrt(1 + a**2)),
+        (cos(t + asin(a)), cos(t) * sqrt(1 - a**2) + a * sin(t)),
+        (cos(t + 2 * atan(2) + phi), (3 * cos(t + phi) - 4 * sin(t + phi)) / 5),
+        (cos(t + atan(2) + phi), cos(t + atan(2))),
+        (cos(t + I * a), cos(t) * cosh(a) + I * sin(t) * sinh(a)),
     ],
     ids=str,
 )
@@ -431,14 +460,27 @@ def test_a_series_equals_numbers_and_nothing_that_is_no_series():
         assert half != value and one != value
 
 
-def test_half_turns_by_an_integer_are_signs_where_series_are_compared():
+@pytest.mark.parametrize("k", [Symbol("k", integer=True), sympy.floor(Symbol("x", real=True))], ids=str)
+def test_half_turns_by_an_integer_are_signs_where_series_are_compared(k):
     """cos(2t + k pi) = cos(2t - k pi) = (-1)**k cos 2t, which is how SymPy writes it."""
-    k = Symbol("k", integer=True)
     square, mirrored = of(cos(t + pi * k / 2) ** 2), of(cos(t - pi * k / 2) ** 2)
 
     for f in (square, mirrored, of(square.as_expr()), pickle.loads(pickle.dumps(square))):
         assert f == square and hash(f) == hash(square)
     assert square == ((-1) ** k * cos(2 * t) + 1) / 2 and square != (cos(2 * t) + 1) / 2
+
+
+@pytest.mark.parametrize(
+    "phase", [atan(2), acos(Rational(1, 3)), atan(a), asin(a), atan2(b, a), phi - atan(2), atan(a / (a + 1)), I * a],
+    ids=str)
+def test_phases_whose_cosine_sympy_knows_are_equal_to_what_it_writes(phase):
+    """sin t sin(t + atan 2) has the constant 1/(2 sqrt(5)) where SymPy writes it: equal, pickled too, of equal hash."""
+    f = of(sin(t) * sin(t + phase))
+
+    expanded = sin(t) * (sin(t) * cos(phase) + cos(t) * sin(phase))
+    for g in (of(f.as_expr()), pickle.loads(pickle.dumps(f)), of(expanded)):
+        assert f == g and g == f and not f - g and hash(f) == hash(g)
+    assert f != of(sin(t) * sin(t - phase)) and f - of(sin(t) * sin(2 * t + phase))
 
 
 @pytest.mark.parametrize(
