@@ -3,7 +3,8 @@ r"""``x' = P x`` packed: the coordinates in which monomials and angles are integ
 All frequencies of ``P`` are whole multiples of one unit ``w``; time is measured as
 ``s = w t``.  Exponent vectors of monomials and integer combinations of angles are
 packed into single integers, so that multiplying monomials or adding angles is one
-addition.
+addition.  Powers of roots of numbers are multiplied out as they arise, ``sqrt(5)**2 = 5``:
+otherwise as many monomials as powers would stand for the few numbers that span their field.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ from math import lcm
 from typing import Any
 
 from flint import fmpq
+from sympy import I
 
 from fastpicard.modes import COS, Angle, Modes, common_unit, orient
-from fastpicard.ring import ONE, Monomial, multiply_monomials
+from fastpicard.ring import ONE, Monomial, expression_of, multiply_monomials, radicand, without_powers_of_roots
 
 FIELD = 32  # bits of one packed exponent or angle index, unless those of P are large themselves
 GROWTH = 24  # bits that are left to each: an index grows by at most its largest in P from one increment to the next
@@ -126,6 +128,18 @@ class Problem:
             found = self._monomials[packed] = multiply_monomials(ONE, self.coordinates.monomial(packed))
         return found
 
+    def product(self, left: int, right: int) -> tuple[tuple[int, Any], ...]:
+        """The product of packed monomials as pairs (packed monomial, number): powers of roots are multiplied out."""
+        packed = left + right
+        if not self._has_roots:
+            return ((packed, 1),)
+        found = self._products.get(packed)
+        if found is None:
+            terms = without_powers_of_roots(self.coordinates.monomial(packed))
+            found = tuple((self.coordinates.pack_monomial(m), c) for m, c in terms.items())
+            self._products[packed] = found
+        return found
+
     def angle(self, packed: int) -> tuple[bool, Angle]:
         """A packed angle as :func:`fastpicard.modes.orient` gives it."""
         found = self._angles.get(packed)
@@ -135,6 +149,14 @@ class Problem:
 
     @cached_property
     def _monomials(self) -> dict[int, tuple[Any, Monomial]]:
+        return {}
+
+    @cached_property
+    def _has_roots(self) -> bool:
+        return any(d > 1 or expression_of(g) is I for g, d in self.coordinates.generators)
+
+    @cached_property
+    def _products(self) -> dict[int, tuple[tuple[int, Any], ...]]:
         return {}
 
     @cached_property
@@ -191,16 +213,24 @@ def _coordinates(entries: list[Modes], constants: list[Modes]) -> Coordinates | 
     unit = common_unit(frequencies)
     if unit is None:
         return None
-    used = {g for _, _, m in every for g, _ in m} | {g for g, _ in unit[0]}
     inverse = tuple((g, -e) for g, e in unit[0])
-    monomials = [_join(m, inverse) for modes in entries for _, _, m in modes]
-    initial = [m for modes in constants for _, _, m in modes]
-    generators = tuple((g, lcm(*(_denominator(m, g) for m in [*monomials, *initial, unit[0]]))) for g in sorted(used))
+    monomials = _with_radicands([_join(m, inverse) for modes in entries for _, _, m in modes]
+                                + [m for modes in constants for _, _, m in modes] + [unit[0]])
+    used = {g for m in monomials for g, _ in m}
+    generators = tuple((g, lcm(*(_denominator(m, g) for m in monomials))) for g in sorted(used))
     narrow = Coordinates(unit, _phases(every), generators)
     indices = [k for _, angle, _ in every for k in narrow.indices(angle)]
-    indices += [e for m in (*monomials, *initial, unit[0]) for e in narrow.exponents(m)]
+    indices += [e for m in monomials for e in narrow.exponents(m)]
     largest = max(map(abs, indices), default=0)
     return replace(narrow, field=max(FIELD, largest.bit_length() + GROWTH))
+
+
+def _with_radicands(monomials: list[Monomial]) -> list[Monomial]:
+    """Also the monomials under their roots, and those under the roots of these."""
+    found = dict.fromkeys(monomials)
+    while under := {m for n in found for g, _ in n for m in radicand(g)} - found.keys():
+        found |= dict.fromkeys(under)
+    return list(found)
 
 
 def _denominator(monomial: Monomial, g: int) -> int:

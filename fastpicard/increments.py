@@ -67,7 +67,7 @@ def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ..
     result = list(known[:n + 1]) or [first_level(p)]
     steps = _steps(p)
     while len(result) <= n:
-        result.append(next_level(result[-1], steps, last=len(result) == n))
+        result.append(next_level(p, result[-1], steps, last=len(result) == n))
     return tuple(result)
 
 
@@ -134,35 +134,36 @@ def _number(c: Any) -> Any:
     return int(c.p) if c.q == 1 else c
 
 
-def next_level(level: Level, steps: list[_Step], last: bool = False) -> Level:
+def next_level(p: Problem, level: Level, steps: list[_Step], last: bool = False) -> Level:
     """``I_{m+1}``, the integral of ``P I_m``; of the last one no integrals are kept to go on from."""
-    return Level(level.order + 1, tuple(_next_column(column, steps, last) for column in level.columns))
+    return Level(level.order + 1, tuple(_next_column(p, column, steps, last) for column in level.columns))
 
 
-def _next_column(column: Column, steps: list[_Step], last: bool) -> Column:
+def _next_column(p: Problem, column: Column, steps: list[_Step], last: bool) -> Column:
     entries: dict[int, Entry] = {}
     integrals: dict[int, Entry] = {}
     for i, step in enumerate(steps):
         if step.twice is not None and not last:
-            integrals[i] = _integral(_product(step.parts, column), step.twice)
+            integrals[i] = _integral(_product(p, step.parts, column), step.twice)
         elif step.constant and all(j in column.integrals for j in step.columns):
-            entries[i] = dict(_product(step.parts, column.integrals))
+            entries[i] = dict(_product(p, step.parts, column.integrals))
         else:
-            entries[i] = _integral(_product(step.parts, column), step.once)
+            entries[i] = _integral(_product(p, step.parts, column), step.once)
     return Column(entries, integrals, column.divisors)
 
 
 # -- one row of P times one column --------------------------------------------
 
 
-def _product(parts: Parts, column: Column | Mapping[int, Entry]) -> Iterator[tuple[int, Rows]]:
+def _product(p: Problem, parts: Parts, column: Column | Mapping[int, Entry]) -> Iterator[tuple[int, Rows]]:
     """The rows of every monomial in turn, so that what is formed is integrated while it is at hand."""
     sources: dict[int, list[tuple[Rows, int, int, Any]]] = {}
     for numbers, terms in parts:
         entry = _combination(numbers, column)
         for kind, k, own, c in terms:
             for monomial, rows in entry.items():
-                sources.setdefault(monomial + own, []).append((rows, kind, k, c))
+                for product, number in p.product(monomial, own):
+                    sources.setdefault(product, []).append((rows, kind, k, c * number))
     for monomial, found in sources.items():
         target: Rows = {}
         for rows, kind, k, c in found:

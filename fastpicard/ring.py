@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from math import floor, gcd, lcm
 from typing import Any
 
@@ -141,6 +141,27 @@ def multiply(left: Polynomial, right: Polynomial) -> Polynomial:
             factor, monomial = multiply_monomials(m, n)
             add_term(product, monomial, c * d * factor)
     return product
+
+
+@cache
+def radicand(number: int) -> Polynomial:
+    """The sum that a generator is if it is made of roots of integers, ``5/8 - sqrt(5)/8``, or nothing; for good."""
+    value = _sums.get(number, {})
+    return value if all(_expressions[g].is_Integer or radicand(g) for monomial in value for g, _ in monomial) else {}
+
+
+def without_powers_of_roots(monomial: Monomial) -> Polynomial:
+    """``2**(1/2)`` to the power 2 is 2, and ``(5/8 - sqrt(5)/8)**(1/2)`` to the power 2 is ``5/8 - sqrt(5)/8``."""
+    factor, rest = multiply_monomials(ONE, monomial)
+    for g, e in rest:
+        if e >= 1 and radicand(g):
+            _, less = multiply_monomials(rest, ((g, -1),))
+            result: Polynomial = {}
+            for m, c in multiply({less: factor}, radicand(g)).items():
+                for n, d in without_powers_of_roots(m).items():
+                    add_term(result, n, c * d)
+            return result
+    return {rest: factor}
 
 
 def reciprocal(terms: Polynomial) -> Polynomial:

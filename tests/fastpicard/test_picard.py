@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 import sympy
 from hypothesis import given, strategies as st
-from sympy import Matrix, Rational, S, Symbol, cos, pi, sin, sqrt
+from sympy import I, Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt
 
 from fastpicard import FloquetMatrix, FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard
 from fastpicard.iteration import SeriesIncrements, first_increments, identity_columns
 from fastpicard.matrix import read_matrix
+from fastpicard.ring import expression_of
 from tests.oracles import (
     distance,
     plain_expression,
@@ -195,6 +196,31 @@ def test_columns_in_proportion_are_added_first(K, first, second):
     plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(4)
 
     assert same_increments(packed, plain, 4, 4)
+
+
+@pytest.mark.parametrize(
+    "drive, degree",
+    [
+        (a + b * cos(t + pi / 5), 4),
+        (b * cos(t + pi / 8) + sqrt(2), 8),
+        (sin(pi / 5) * cos(sqrt(5) * t) - 1, 4),
+        (sqrt(1 + sqrt(2 + sqrt(3))) * cos(t), 8),
+        (Rational(2, 3) * 2 ** Rational(1, 3) * exp(I * t), 6),
+        (sqrt(a + 1) * cos(t) + a * sin(2 * t) / cos(pi / 5), 2),
+    ],
+    ids=str,
+)
+def test_powers_of_roots_are_multiplied_out_as_they_arise(drive, degree):
+    """Against the engine in series, which lets them be; as many products are left as the degrees of the roots make."""
+    P = Matrix([[0, 1], [-drive, 0]])
+    system = read_matrix(P, t)
+    packed = first_increments(system, identity_columns(2), 3).to_order(7)
+    plain = SeriesIncrements(system, (FundamentalMatrix(P, t, 0).series,)).to_order(7)
+
+    assert same_increments(packed, plain, 7, 2)
+    monomials = {m for k in range(8) for _, _, m in packed.entry(k, 1, 0)}
+    roots = {tuple((g, e) for g, e in m if not expression_of(g).free_symbols) for m in monomials}
+    assert len(roots) <= degree and all(e < 1 for root in roots for g, e in root if expression_of(g) != I)
 
 
 @pytest.mark.parametrize(
