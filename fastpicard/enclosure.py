@@ -135,8 +135,9 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     length = end - start
     scales = _balance(P)
     speed, turn = _speed(P, scales) * _upper(abs(length)), P.highest * _upper(abs(length))
-    # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones.
-    strides = speed / 0.25 if P.is_wide else max(speed / (9 + ctx.prec / 50), turn / 3.2)
+    # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones, and what
+    # is no rounding in P grows in each by the bound of the growth.
+    strides = speed / 0.25 if P.accuracy < ctx.prec - 16 else max(speed / (9 + ctx.prec / 50), turn / 3.2)
     if not strides <= MOST_PIECES:
         largest = max(P.bound.entries())
         raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} can take {MOST_PIECES} steps at most, but "

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from sys import maxsize
 from typing import Any
 
 from flint import arb, arb_mat
@@ -65,7 +66,13 @@ class Harmonics:
     @cached_property
     def is_wide(self) -> bool:
         """Whether ``P`` stands for many matrices: a coefficient has a radius that is not rounding."""
-        return any(x.rel_accuracy_bits() < 32 for waves in self.waves.values() for wave in waves for x in wave)
+        return self.accuracy < 32
+
+    @cached_property
+    def accuracy(self) -> int:
+        """The bits of the least accurate coefficient."""
+        return min((x.rel_accuracy_bits() for waves in self.waves.values() for wave in waves for x in wave),
+                   default=maxsize)
 
     @cached_property
     def reversal(self) -> tuple[int, ...] | None:

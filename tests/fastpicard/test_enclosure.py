@@ -183,6 +183,16 @@ def test_balls_and_intervals_of_parameters_hold_all_their_points(x, y, u, v):
     assert all(wide.overlaps(narrow) for wide, narrow in pairs(ball, point))
 
 
+@pytest.mark.parametrize("radius, digits", [(15, 4), (12, 4), (10, 2)])
+def test_narrow_balls_keep_the_digits_that_they_fix(radius, digits):
+    """Solutions that grow 1e6 times: the radius is far above rounding, however small it is."""
+    r = Fraction(1, 10**radius)
+    x, y = Fraction(-8, 3), Fraction(-11, 4)
+    found = MATHIEU.enclosure({a: (x - r, x + r), b: (y - r, y + r)}, digits)
+
+    assert all(ball.contains(point) for ball, point in pairs(found, MATHIEU.enclosure({a: x, b: y}, 30)))
+
+
 def test_irrational_numbers_and_phases_are_balls_from_the_start():
     """sqrt(2), e, and a phase of 1: against the test's own Taylor method."""
     P = Matrix([[0, 1], [-sqrt(2) / 5 - exp(-1) * cos(t + 1), -pi * sin(t) / 7]])
