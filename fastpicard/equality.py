@@ -104,6 +104,8 @@ def _without_phases(modes: Modes, join: Callable[[Monomial], bool]) -> Modes:
 
 def _with_one_name(modes: Modes) -> Modes:
     """The same series, where angles that are equal by relations between parameters have become one."""
+    if not has_relations({m for _, (frequency, phase), _ in modes for m in (*dict(frequency), *dict(phase))}):
+        return modes
     names: dict[Angle, tuple[bool, Angle]] = {NO_ANGLE: (False, NO_ANGLE)}
     result: Modes = {}
     for (kind, angle, monomial), f in modes.items():
