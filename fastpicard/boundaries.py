@@ -24,7 +24,7 @@ from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol
 
-from fastpicard.charted import axes_of, mapping_of, point_of
+from fastpicard.charted import axes_of, fixed_numbers, mapping_of, point_of
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
@@ -300,12 +300,13 @@ class Boundary:
         Raises
         ------
         BadInputError, BadTypeError
-            if no boundary is found near ``start``, or that is not in the rectangle; if it goes on for more than a
-            hundred sides; if axes, ``fixed`` or ``step`` are not as described.
+            if no boundary is found near ``start``, or that is not in the rectangle; if it goes on for more
+            steps than a hundred sides take; if axes, ``fixed`` or ``step`` are not as described.
         """
         axes = axes_of(x, y)
         names, box = tuple(axis.symbol for axis in axes), [(axis.lo, axis.hi - axis.lo) for axis in axes]
-        exact = self._fixed(fixed, names)
+        numbers_given = fixed_numbers(fixed, names)
+        exact = exact_values({**numbers_given, names[0]: 0, names[1]: 0}, self.symbols, self._F.t)
         place = point_of(start)
         if not all(axis.lo <= z <= axis.hi for axis, z in zip(axes, place, strict=True)):
             raise BadInputError(f"start must be in the rectangle of x and y, but it is {start}.  Give a point there.")
@@ -318,20 +319,6 @@ class Boundary:
             raise BadInputError("a boundary is followed from a point near it, but none was found in the rectangle "
                                 f"near {start}.  Start from a root().")
         return found
-
-    def _fixed(self, fixed: Values | None, names: tuple[Any, ...]) -> dict[Symbol, Any]:
-        """The numbers of the parameters that are not on an axis, exactly."""
-        given = mapping_of(fixed)
-        for s in names:
-            if s in given:
-                raise BadInputError(f"a parameter has one value, but {s} is fixed at {given[s]} and is also on an "
-                                    "axis.  Leave it out of fixed.")
-        exact = exact_values({**given, **dict.fromkeys(names, 0)}, self.symbols, self._F.t)
-        for s, value in exact.items():
-            if isinstance(value, arb) and not value.is_exact():
-                raise BadTypeError(f"a fixed parameter must be one number, but {s} is the ball {value}.  Give its "
-                                   "middle.")
-        return exact
 
     def __repr__(self) -> str:
         kind = f"{self.label} {self.parity}".strip()

@@ -168,8 +168,8 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
         is halved what has filled a gigabyte
     fixed : {Symbol: number}    for the other parameters
     modes : sequence of {Symbol: expression}, optional
-        the system consists of several equations like F's, with these expressions in place of its parameters:
-        numbers times powers of x's and y's symbols.  It is stable where all of them are.
+        the system consists of several equations like F's, with these expressions in place of its parameters, all but
+        the fixed ones: numbers, 0 too, times powers of x's and y's symbols.  It is stable where all of them are.
     undecided : float       the part of the area that may stay undecided: where to stop
     progress : bool or function
         True for a line of text on stderr; a function is called with (seconds passed, undecided part).

@@ -12,7 +12,7 @@ a monomial ``a**i b**j`` becomes a number times a monomial in u and w.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import gcd
@@ -189,15 +189,12 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     if not isinstance(F, FloquetMatrix):
         raise BadTypeError(f"a chart is drawn of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
     first, second = axes_of(x, y)
-    numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
     decoupled = modes is not None
     given = list(modes) if decoupled else [{s: s for s in (first.symbol, second.symbol)}]
     if not given:
         raise BadInputError("a chart with modes is one of several equations, but modes is empty.  Give one or more.")
-    for s in (first.symbol, second.symbol, *(s for mode in given if isinstance(mode, Mapping) for s in mode)):
-        if s in numbers:
-            raise BadInputError(f"a parameter has one value, but {s} is fixed at {numbers[s]} and is also on an axis "
-                                "or given by the modes.  Leave it out of fixed.")
+    numbers = fixed_numbers(fixed, (first.symbol, second.symbol,
+                                    *(s for mode in given if isinstance(mode, Mapping) for s in mode)))
     if numbers:
         F = with_values(F, numbers)
     members = tuple(_member(mode, numbers, first.symbol, second.symbol) for mode in given)
@@ -240,6 +237,16 @@ def _exact_expression(value: Any, symbol: Symbol) -> Expr:
         raise BadTypeError(f"a fixed parameter must be one number, but {symbol} is the ball {number}.  Put it on an "
                            "axis, or give a number.")
     return sympy.Rational(int(number.p), int(number.q))
+
+
+def fixed_numbers(fixed: Values | None, free: Iterable[Symbol]) -> dict[Symbol, Expr]:
+    """The numbers that are fixed, exactly; raises for balls, and for what is on an axis or given by modes."""
+    numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
+    for s in free:
+        if s in numbers:
+            raise BadInputError(f"a parameter has one value, but {s} is fixed at {numbers[s]} and is also on an axis "
+                                "or given by the modes.  Leave it out of fixed.")
+    return numbers
 
 
 def mapping_of(fixed: Values | None) -> Values:

@@ -105,7 +105,7 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
     Raises
     ------
     BadInputError
-        if it goes on for more than a hundred sides.
+        if it goes on for more steps than a hundred sides of the rectangle take.
     """
     np, plane = numpy(), Plane(function, box)
     with working(128):
@@ -140,18 +140,19 @@ def _one_way(plane: Plane, first: Place, side: float, step: float) -> tuple[list
             if length < SHORTEST:
                 return track, False
             continue
+        side = side if turn > 0 else -side
         if not _inside(new[0]):
-            end = plane.leave(here[0], new[0])
+            end = plane.leave(here, new)
             return [*track, *([(end[0], _along(end[1], side))] if end else [])], False
-        here, side = new, side if turn > 0 else -side
+        here = new
         tangent = _along(here[1], side)
         track.append((here[0], tangent))
         if len(track) > 3 and _distance(here[0], first[0]) < 0.6 * length and _dot(tangent, start) > STRAIGHT:
             is_past = _dot(_moved(first[0], -1.0, here[0]), tangent) < 0
             return track[:-1] if is_past else track, True
         length = min(step, 1.5 * length)
-    raise BadInputError(f"a curve is followed for {MOST_SIDES} sides of the rectangle at most, and this one goes on.  "
-                        "Take a smaller rectangle.")
+    raise BadInputError(f"a curve is followed for {len(track)} steps at most, but this one goes on from there.  Take a "
+                        "smaller rectangle, or a longer step.")
 
 
 def _goes_on(plane: Plane, here: Place, new: Place, target: Pair, turn: float) -> bool:
@@ -204,15 +205,16 @@ class Plane:
         below, above = (self.at(_moved(point, sign * NEAR, unit))[0] for sign in (-1, 1))
         return bool(below * above > 0)
 
-    def leave(self, point: Pair, outside: Pair) -> Place | None:
-        """Where the curve leaves the rectangle on its way to a point outside; None where it is on an edge already."""
+    def leave(self, here: Place, new: Place) -> Place | None:
+        """Where the curve leaves the rectangle on its way to a place outside; None where it is on an edge already."""
+        point, outside = here[0], new[0]
         parts = [((float(q > 1) - p) / (q - p), k) for k, (p, q) in enumerate(zip(point, outside, strict=True))
                  if not 0 <= q <= 1]
         part, held = min(parts)
         target = [p + part * (q - p) for p, q in zip(point, outside, strict=True)]
         target[held] = float(outside[held] > 1)
         found = self.onto(target, held)
-        if found is None or not _inside(found[0]):
+        if found is None or not _inside(found[0]) or _dot(found[1], new[1]) < 0:
             return None
         return found if SHORTEST < _distance(found[0], point) <= 2 * _distance(point, outside) else None
 
