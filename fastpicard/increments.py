@@ -64,11 +64,10 @@ class Level:
 
 def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ...]:
     """``I_0 .. I_n``, going on from those already known."""
-    result = list(known[:n + 1]) or [first_level(p)]
+    known = known[:n + 1] or (first_level(p),)
     steps = _steps(p)
-    while len(result) <= n:
-        result.append(next_level(p, result[-1], steps, last=len(result) == n))
-    return tuple(result)
+    columns = [_next_columns(p, column, steps, n + 1 - len(known)) for column in known[-1].columns]
+    return (*known, *(Level(m, new) for m, new in enumerate(zip(*columns, strict=True), len(known))))
 
 
 def first_level(p: Problem) -> Level:
@@ -134,12 +133,17 @@ def _number(c: Any) -> Any:
     return int(c.p) if c.q == 1 else c
 
 
-def next_level(p: Problem, level: Level, steps: list[_Step], last: bool = False) -> Level:
-    """``I_{m+1}``, the integral of ``P I_m``; of the last one no integrals are kept to go on from."""
-    return Level(level.order + 1, tuple(_next_column(p, column, steps, last) for column in level.columns))
+def _next_columns(p: Problem, column: Column, steps: list[_Step], count: int) -> list[Column]:
+    """Integrals of ``P`` times a column, again and again; one column at a time, for its last numbers are at hand."""
+    result = []
+    for left in reversed(range(count)):
+        column = _next_column(p, column, steps, last=not left)
+        result.append(column)
+    return result
 
 
 def _next_column(p: Problem, column: Column, steps: list[_Step], last: bool) -> Column:
+    """The integral of ``P`` times a column; of the last one no integrals are kept to go on from."""
     entries: dict[int, Entry] = {}
     integrals: dict[int, Entry] = {}
     for i, step in enumerate(steps):
