@@ -34,13 +34,13 @@ from fastpicard.coordinates import Problem
 from fastpicard.errors import BadInputError
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import reversing_signs
-from fastpicard.increments import to_modes, without_frequencies
 from fastpicard.iteration import PackedIncrements
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Linear, Modes, orient
 from fastpicard.period import turns_of, whole_turns
 from fastpicard.ring import ONE, Polynomial, multiply, to_expression
 from fastpicard.spectrum import keeps_area, symplectic_forms
+from fastpicard.unpacking import to_modes, without_frequencies
 
 Signs = tuple[int, ...]
 

@@ -8,10 +8,11 @@ from flint import fmpq
 
 from fastpicard import modes as algebra
 from fastpicard.coordinates import Problem, problem
-from fastpicard.increments import Level, levels, to_modes, without_frequencies
+from fastpicard.increments import Level, levels
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Modes
 from fastpicard.ring import ONE
+from fastpicard.unpacking import to_modes, without_frequencies
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,86 @@
+"""Rows of increments as series again, and their values after whole turns of all waves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from flint import fmpq_poly
+
+from fastpicard.coordinates import Problem
+from fastpicard.modes import Modes, mask
+from fastpicard.ring import ONE, Monomial, multiply_monomials
+from fastpicard.rows import Entry, Rows, add_rows, reflected, reflection
+
+
+def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
+    """The entry after whole turns of every angle: only powers of time and phases remain.
+
+    With ``half_turns``, after a time in which the unit of frequency makes that many half turns: every wave of
+    frequency ``k`` then has the sign ``(-1)**(k half_turns)``.
+    """
+    result: Entry = {}
+    start_of = p.coordinates.without_frequency if p.coordinates.phases else _nowhere
+    for monomial, rows in entry.items():
+        collapsed: Rows = {}
+        for key, row in rows.items():
+            angle = key >> 1
+            place = 2 * start_of(angle) + (key & 1)
+            if half_turns and p.coordinates.frequency(angle) * half_turns % 2:
+                row = -row
+            if place < 0:
+                place, row = reflection(place, row)
+            old = collapsed.get(place)
+            collapsed[place] = row if old is None else old + row
+        result[monomial] = {place: mask(place, row) if place < 2 else row for place, row in collapsed.items()}
+    return result
+
+
+def _nowhere(angle: int) -> int:
+    return 0
+
+
+def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
+    """The sum of entries of increments as a series in ``t = s / unit``."""
+    total = _total(p, entries)
+    waves = {key: (key & 1, *p.angle(key >> 1)) for key in set().union(*total.values())}
+    modes = {(kind, angle, monomial): reflected(kind, row) if turned else row
+             for monomial, rows in total.items() for key, row in rows.items() if row
+             for kind, turned, angle in (waves[key],)}
+    return modes if p.coordinates.unit == (ONE, 1) else _in_time(modes, *p.coordinates.unit)
+
+
+def _total(p: Problem, entries: Iterable[Entry]) -> dict[Monomial, Rows]:
+    """The sum of entries, which is cheaper to form before angles are unpacked."""
+    total: dict[Monomial, Rows] = {}
+    for entry in entries:
+        for packed, rows in entry.items():
+            factor, monomial = p.monomial(packed)
+            if factor != 1:
+                rows = {key: row * factor for key, row in rows.items()}
+            if monomial in total:
+                add_rows(total[monomial], rows)
+            else:
+                total[monomial] = dict(rows)
+    return total
+
+
+def _in_time(modes: Modes, unit: Monomial, number: Any) -> Modes:
+    """A series in ``s`` as one in ``t``, where ``s = number unit t``."""
+    result: Modes = {}
+    for (kind, angle, monomial), row in modes.items():
+        if number != 1:
+            row = row(fmpq_poly([0, number]))
+        for m, f in ((monomial, row),) if unit == ONE else _by_power(row, monomial, unit):
+            old = result.get((kind, angle, m))
+            result[kind, angle, m] = f if old is None else old + f
+    for mode in [mode for mode, f in result.items() if not f]:
+        del result[mode]
+    return result
+
+
+def _by_power(row: Any, monomial: Monomial, unit: Monomial) -> Iterator[tuple[Monomial, Any]]:
+    """``s**r = unit**r t**r``: one row for each power, where the unit of frequency is a symbol."""
+    for r, value in enumerate(row.coeffs()):
+        gained, product = multiply_monomials(monomial, tuple((g, r * e) for g, e in unit if r))
+        yield product, fmpq_poly([0] * r + [value * gained])
