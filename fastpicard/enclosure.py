@@ -34,6 +34,7 @@ from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 
 MOST_PIECES, MOST_ORDERS = 1 << 20, 1 << 14
+MOST_POWERS = 1 << 60  # of one step, where P is constant
 
 
 def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: int, is_box: bool = False,
@@ -138,9 +139,10 @@ def transition(P: Harmonics, start: Any, end: Any) -> Any:
     # Found by trial: more digits, longer strides; but Taylor coefficients of waves fall slowly in long ones, and what
     # is no rounding in P grows in each by the bound of the growth.
     strides = speed / 0.25 if P.accuracy < ctx.prec - 16 else max(speed / (9 + ctx.prec / 50), turn / 3.2)
-    if not strides <= MOST_PIECES:
+    most = MOST_POWERS if P.is_constant else MOST_PIECES
+    if not strides <= most:
         largest = max(P.bound.entries())
-        raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} can take {MOST_PIECES} steps at most, but "
+        raise BadInputError(f"the way from {start.str(5)} to {end.str(5)} can take {most} steps at most, but "
                             f"the coefficients reach {largest.str(3, radius=False)}.  Take smaller ones or a smaller "
                             "period.")
     pieces = max(1, math.ceil(strides))

@@ -61,7 +61,7 @@ class Harmonics:
     @cached_property
     def is_constant(self) -> bool:
         """Whether ``P`` does not depend on time."""
-        return all(q == 0 for waves in self.waves.values() for q, _, _ in waves)
+        return all(q == 0 or c == 0 == s for waves in self.waves.values() for q, c, s in waves)
 
     @cached_property
     def is_wide(self) -> bool:

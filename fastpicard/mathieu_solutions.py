@@ -68,7 +68,8 @@ def mathieu_s(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
 def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
     """The characteristic exponent ``nu``, ``cos(pi nu) = w_I(pi; a, q)``: an mpc with all ``digits`` right.
 
-    Real (stable) or with real part 0 or 1 (unstable); arguments and errors as :func:`mathieu_c`.
+    Real (stable) or with real part 0 or 1 (unstable); arguments and errors as :func:`mathieu_c`.  At ``q = 0`` it is
+    ``sqrt(a)`` less an even integer, on the boundaries too.
 
     Raises
     ------
@@ -84,6 +85,8 @@ def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
     (1.0 + 0.453453534347j)
     """
     wanted, numbers = count_of_digits(digits), _numbers(a=a, q=q)
+    if ball(numbers["q"]).is_zero() and not is_box(numbers):
+        return to_complex(acb(*to_digits(lambda: _free(ball(numbers["a"])), wanted + 2).entries()), wanted)
 
     def once() -> Any:
         half = transition(_equation(*map(ball, numbers.values())), arb(0), arb.pi() / 2)
@@ -102,6 +105,17 @@ def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
         tried *= 2
     raise BadInputError(f"a = {a} cannot be told from a characteristic number at q = {q}: w_I(pi) is +-1 to "
                         f"{tried // 2} digits.  On the boundary nu is 0 or 1.")
+
+
+def _free(a: Any) -> Any:
+    """Real and imaginary part of ``nu`` without a wave, where solutions are ``cos(sqrt(a) z)``."""
+    if a < 0:
+        return arb_mat([[0, (-a).sqrt()]])
+    if not a >= 0:  # not yet told from 0
+        return arb_mat([[arb.nan(), 0]])
+    root = a.sqrt()
+    nearest = ((root.mid() + 1) / 2).mid().floor().unique_fmpz()
+    return arb_mat([[abs(root - 2 * nearest), 0]])
 
 
 def _is_known(x: Any, digits: int) -> bool:

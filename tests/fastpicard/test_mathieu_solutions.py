@@ -1,12 +1,11 @@
 """Solutions and exponents of Mathieu's equation: against SciPy where it is right, mpmath and closed forms."""
 
-import math
 from fractions import Fraction
 
 import mpmath
 import pytest
 from flint import arb
-from hypothesis import given, settings, strategies as st
+from hypothesis import example, given, settings, strategies as st
 from scipy.special import mathieu_cem, mathieu_sem
 from sympy import Rational, Symbol, cos, pi, sin, sqrt
 
@@ -86,29 +85,42 @@ def test_a_small_value_is_not_taken_to_be_zero(exponent):
 
 
 @settings(max_examples=30)
-@given(st.floats(0.1, 30).filter(lambda a: not math.sqrt(a).is_integer()))  # squares are on a boundary
+@given(st.floats(0.1, 30))
+@example(1.0)  # squares are on a boundary
+@example(4.0)
+@example(9.0)
 def test_without_q_they_are_circular(a):
-    """cos sqrt(a) z, sin(sqrt(a) z)/sqrt(a), nu next to sqrt(a) modulo 2."""
+    """cos sqrt(a) z, sin(sqrt(a) z)/sqrt(a), nu the distance of sqrt(a) from an even number."""
     root = mpmath.sqrt(mpmath.mpf(a))
     assert abs(mathieu_c(a, 0, 2) - mpmath.cos(2 * root)) < 1e-13
     assert abs(mathieu_s(a, 0, 2) - mpmath.sin(2 * root) / root) < 1e-13
     nu = mathieu_exponent(a, 0)
-    assert nu.imag == 0 and abs(mpmath.cos(mpmath.pi * nu.real) - mpmath.cos(mpmath.pi * root)) < 1e-13
+    assert nu.imag == 0 and abs(nu.real - abs(root - 2 * mpmath.nint(root / 2))) < 1e-13
+
+
+@pytest.mark.parametrize("a, nu", [(0, 0), (10**40 + 1, "5e-21"), (-10**30, 10**15 * 1j), (10**40, 0)])
+def test_without_q_exponents_have_all_their_digits(a, nu):
+    """sqrt(10**40 + 1) is 10**20 + 5e-21."""
+    assert mpmath.nstr(mathieu_exponent(a, 0), 15) == mpmath.nstr(mpmath.mpc(nu), 15)
+
+
+@pytest.mark.parametrize("a, z", [(10**10, 3), (10**20, Fraction(1, 3)), (-10**10, 1), (10**8, 10**9)])
+def test_without_q_fast_solutions_take_few_steps(a, z):
+    """One step and powers of it, for the equation is autonomous; cos(sqrt(a) z)."""
+    with mpmath.workdps(60):
+        expected = mpmath.cos(mpmath.sqrt(a) * mpmath.mpf(z.numerator) / z.denominator).real
+        assert abs(mathieu_c(a, 0, z, 20) / expected - 1) < 1e-19
 
 
 @settings(max_examples=30)
 @given(st.fractions(-2, 9, max_denominator=50), st.fractions(0, 5, max_denominator=50), st.integers(15, 40))
 def test_the_exponent_is_the_period_of_the_solution(a, q, digits):
     """cos(pi nu) = w_I(pi), in the digits asked for; real exactly where w_I(pi) is within [-1, 1]."""
-    try:
-        nu = mathieu_exponent(a, q, digits)
-    except BadInputError:  # on a boundary: then w_I(pi) is 1 or -1 to many digits
-        assert q == 0
-        return
+    nu = mathieu_exponent(a, q, digits)
     value = mathieu_c(a, q, mpmath_pi(digits + 30), digits + 10)
     with mpmath.workdps(digits + 10):
         assert abs(mpmath.cos(mpmath.pi * nu) - value) < mpmath.mpf(10) ** (2 - digits) * max(1, abs(value))
-        assert (nu.imag == 0) == (abs(value) < 1)
+        assert (nu.imag == 0) == (abs(value) < 1) or q == 0 and abs(value) == 1
         assert 0 <= nu.real <= 1 and nu.imag >= 0
 
 
@@ -154,9 +166,9 @@ def test_digits_that_are_none_are_refused_with_digits_that_would_do():
 
 
 def test_a_boundary_has_no_exponent_of_its_own():
-    """a = 4, q = 0: w_I(pi) = 1 exactly, and no ball can say on which side."""
+    """a_2(1) to 700 digits: no ball can say on which side of it."""
     with pytest.raises(BadInputError, match="characteristic number"):
-        mathieu_exponent(4, 0)
+        mathieu_exponent(mathieu_a(2, 1, 700), 1)
 
 
 @pytest.mark.parametrize(
