@@ -15,6 +15,7 @@ of odd solutions (module ``halfway``), whose zeros are simple where those of p a
 
 from __future__ import annotations
 
+import math
 import numbers
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from typing import Any
 
 from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
-from sympy import Expr, Symbol
+from sympy import Expr, Symbol, latex
 
 from fastpicard.charted import axes_of, fixed_numbers, mapping_of, point_of
 from fastpicard.collapsed import Collapsed
@@ -33,6 +34,7 @@ from fastpicard.evaluate import Values, check_digits, exact_values, refine, to_n
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.harmonics import harmonics
+from fastpicard.latex import meaning, number, sentence, shown
 from fastpicard.modes import Modes
 from fastpicard.precision import working
 from fastpicard.remainder import a_posteriori
@@ -158,6 +160,10 @@ class Root:
     error: float
     evaluations: int
     slopes: Mapping[Symbol, float]
+
+    def _repr_latex_(self) -> str:
+        proved = rf"\pm {number(self.error, 2)}" if self.error < math.inf else sentence(", not proved")
+        return shown(f"{number(self.value)} {proved}")
 
 
 class Boundary:
@@ -323,6 +329,11 @@ class Boundary:
     def __repr__(self) -> str:
         kind = f"{self.label} {self.parity}".strip()
         return f"<Boundary {kind} in {', '.join(map(str, self.symbols))}, from {self._F!r}>"
+
+    def _repr_latex_(self) -> str:
+        names = ", ".join(map(latex, self.symbols))
+        return shown(meaning(self.label, self.parity), rf"{sentence('a polynomial in')}\; {names}",
+                     sentence(f"order {self._F.n}"))
 
 
 def _rows(numbers: list[Any], columns: int) -> Matrix:

@@ -29,6 +29,7 @@ from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, ball, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
+from fastpicard.latex import interval, sentence, shown
 from fastpicard.local import BITS, LocalMap, amplitudes, common_bound, convex, order_for, polynomials
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles, bisected, cells, corners, flattened, grid, joined, narrowed
@@ -147,11 +148,16 @@ class CertifiedChart:
         """
         return plotting.certified(self, ax, xlabel, ylabel, title)
 
+    def _parts(self) -> str:
+        return ", ".join(f"{name.lower()} {self.fraction(Verdict(name)):.6g}" for name in CODES)
+
     def __repr__(self) -> str:
-        parts = ", ".join(f"{name.lower()} {self.fraction(Verdict(name)):.6g}" for name in CODES)
         return (f"<CertifiedChart of {self.x.symbol} in [{self.x.lo:g}, {self.x.hi:g}], {self.y.symbol} in "
-                f"[{self.y.lo:g}, {self.y.hi:g}]: {parts}; {len(self.codes)} cells, order {self.order}, "
+                f"[{self.y.lo:g}, {self.y.hi:g}]: {self._parts()}; {len(self.codes)} cells, order {self.order}, "
                 f"{self.seconds:.1f} s>")
+
+    def _repr_latex_(self) -> str:
+        return shown(*(interval(axis.symbol, axis.lo, axis.hi) for axis in (self.x, self.y)), sentence(self._parts()))
 
 
 def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any], seconds: float = 10,

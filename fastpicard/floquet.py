@@ -27,6 +27,7 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, ball, check_digits, count_of_digits, exact_number, to_complex, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
+from fastpicard.latex import summary
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
 from fastpicard.modes import Modes
 from fastpicard.parameters import BOUND_BITS, is_box, numbers_in, problem_at
@@ -470,5 +471,5 @@ class FloquetMatrix:
 
     def _repr_latex_(self) -> str:
         if self.n > 8:
-            return f"$\\displaystyle \\text{{{repr(self).strip('<>')}}}$"
+            return summary(self)
         return latex_or_summary(self, sum(len(modes) for modes in self._all()))

@@ -14,6 +14,7 @@ from sympy import ImmutableMatrix, Symbol
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError, ShapeError
 from fastpicard.evaluate import Values, check_digits, evaluate, numpy
+from fastpicard.latex import shown, summary
 from fastpicard.modes import Modes
 from fastpicard.reading import as_finite, as_time, check_same_time, read, read_constant, shifted
 from fastpicard.ring import Polynomial
@@ -161,8 +162,8 @@ def _dot(row: tuple[Modes, ...], column: tuple[Modes, ...]) -> Modes:
 def latex_or_summary(matrix: Any, size: int, limit: int = 100) -> str:
     """LaTeX where a person could read it, the one-line summary otherwise."""
     if size <= limit:
-        return f"$\\displaystyle {sympy.latex(matrix.as_matrix())}$"
-    return f"$\\displaystyle \\text{{{str(matrix).strip('<>')}}}$"
+        return shown(sympy.latex(matrix.as_matrix()))
+    return summary(matrix)
 
 
 def number_matrix(values: list[Any], shape: tuple[int, int], digits: int | None) -> Any:

@@ -29,6 +29,7 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values
 from fastpicard.iteration import Increments, first_increments, identity_columns
+from fastpicard.latex import summary
 from fastpicard.matrix import SeriesMatrix, latex_or_summary, read_matrix, read_vector
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, read_constant
 from fastpicard.ring import Polynomial, to_expression
@@ -279,7 +280,7 @@ class PicardIterate:
 
     def _repr_latex_(self) -> str:
         if self.n > 8:
-            return f"$\\displaystyle \\text{{{repr(self).strip('<>')}}}$"
+            return summary(self)
         return latex_or_summary(self, sum(len(self[i, j]) for i in range(self.shape[0]) for j in range(self.shape[1])))
 
 

@@ -17,6 +17,7 @@ from fastpicard import modes as algebra
 from fastpicard.equality import support, vanishes
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Values, evaluate, free_symbols
+from fastpicard.latex import sentence, shown
 from fastpicard.modes import Modes
 from fastpicard.reading import as_expression, as_finite, as_time, check_same_time, read, read_constant
 from fastpicard.ring import ONE, rational
@@ -243,5 +244,5 @@ class PoissonSeries:
 
     def _repr_latex_(self) -> str:
         if len(self) <= 4 * SHORT:
-            return f"$\\displaystyle {sympy.latex(self.as_expr())}$"
-        return f"$\\displaystyle \\text{{Poisson series in }} {self._t} \\text{{ with {len(self)} terms}}$"
+            return shown(sympy.latex(self.as_expr()))
+        return shown(sentence(f"Poisson series in {self._t} with {len(self)} terms"))

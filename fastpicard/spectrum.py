@@ -29,6 +29,7 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
 
+from fastpicard.latex import number, shown
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.packing import packed, unpacked
 from fastpicard.ring import expression_of
@@ -251,6 +252,14 @@ class Multiplier:
 
     def __complex__(self) -> complex:
         return complex(_middle(self.ball))
+
+    def _repr_latex_(self) -> str:
+        digits = int(min(max(self.digits, 2), 30))
+        real, imaginary = (number(x.mid().str(digits, radius=False), digits) for x in (self.ball.real, self.ball.imag))
+        sign = "" if imaginary.startswith("-") else "+ "
+        radius = number(float((self.ball.real.rad() + self.ball.imag.rad()).upper()), 2)
+        circle = {True: [r"\left|\lambda\right| = 1"], False: [r"\left|\lambda\right| \neq 1"], None: []}
+        return shown(rf"\lambda = {real} {sign}{imaginary}\, i \pm {radius}", *circle[self.on_unit_circle])
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _multiplier, (packed(self.ball.real, self.ball.imag), self.on_unit_circle)

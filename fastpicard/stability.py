@@ -28,6 +28,7 @@ from typing import Any, ClassVar
 from flint import arb, arb_mat
 
 from fastpicard.evaluate import numpy
+from fastpicard.latex import sentence, shown
 from fastpicard.spectrum import Disc, in_rho, root_discs
 
 
@@ -67,6 +68,9 @@ class Verdict:
 
     def __str__(self) -> str:
         return f"{self.name}: {self.reason}" if self.reason else self.name
+
+    def _repr_latex_(self) -> str:
+        return shown(sentence(str(self)))
 
 
 Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED = Verdict("STABLE"), Verdict("UNSTABLE"), Verdict("UNDECIDED")

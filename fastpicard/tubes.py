@@ -23,7 +23,7 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_poly, arb_series, ctx
 from mpmath.libmp import dps_to_prec
-from sympy import Matrix, Symbol
+from sympy import Matrix, Symbol, latex
 
 from fastpicard.charted import Charted, Exponents, read_chart
 from fastpicard.collapsed import Collapsed
@@ -32,6 +32,7 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
+from fastpicard.latex import interval, meaning, number, shown
 from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, polynomials, shift
 from fastpicard.packing import packed, unpacked
 from fastpicard.precision import working
@@ -76,6 +77,10 @@ class Tube:
             t = (ball(exact_number(b, "b")) - self.center) / self.half
             value = arb_poly(list(self.coefficients))(t) + arb(0, arb(self.radius))
             return value if digits is None else to_number(value, digits)
+
+    def _repr_latex_(self) -> str:
+        return shown(meaning(self.label, self.parity), rf"\left|a - g(b)\right| \le {number(self.radius, 2)}",
+                     interval(Symbol("b"), self.lo, self.hi))
 
     def __reduce__(self) -> tuple[Any, ...]:
         exact = packed(self.center, self.half, *self.coefficients)
@@ -130,6 +135,11 @@ class Tubes:
     def __repr__(self) -> str:
         return (f"<Tubes of {self.x[0]}({self.y[0]}): {len(self.pieces)} pieces, radius {self.radius:.1e}, "
                 f"{self.area:.1e} of the area, order {self.order}>")
+
+    def _repr_latex_(self) -> str:
+        a, b = latex(self.x[0]), latex(self.y[0])
+        return shown(rf"\left|{a} - g_k({b})\right| \le {number(self.radius, 2)}",
+                     rf"k = 1, \ldots, {len(self.pieces)}", interval(*self.x), interval(*self.y))
 
 
 def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any], radius: float = 1e-20,

@@ -133,6 +133,10 @@ class CompiledEquations:
     def __repr__(self) -> str:
         return f"CompiledEquations({self.equations.scene}, {self.target})"
 
+    def _repr_latex_(self) -> str:
+        return (r"$\ddot\theta = M(\theta)^{-1} f(t, \theta, \dot\theta), "
+                rf"\quad n = {len(self.equations.scene)}, \quad \text{{{self.target}}}$")
+
 
 def compile_equations(equations: EquationsOfMotion, values: Mapping[Any, Any] | None = None,
                       target: str = "numpy") -> CompiledEquations:

@@ -15,7 +15,7 @@ from numbers import Integral
 from typing import Any
 
 import numpy as np
-from sympy import Integer, pi
+from sympy import Integer, latex, pi
 
 from .angles import TURN
 from .chain import CompiledChain
@@ -64,6 +64,11 @@ class Crossing:
         object.__setattr__(self, "angle", quantity(self.angle, "angle"))
         if not self.angle.is_number:
             raise QuantityError(f"a crossing's angle is {self.angle}, which is no number: give one, such as pi/2.")
+
+
+    def _repr_latex_(self) -> str:
+        rate = {0: "", 1: rf", \quad \dot\theta_{{{self.rod}}} > 0", -1: rf", \quad \dot\theta_{{{self.rod}}} < 0"}
+        return rf"$\theta_{{{self.rod}}} = {latex(self.angle)} \pmod{{2\pi}}{rate[self.direction]}$"
 
 
 def _is_whole(number: Any) -> bool:

@@ -111,6 +111,11 @@ class Ensemble(Frozen):
     def __repr__(self) -> str:
         return f"Ensemble({len(self)} chains, the first of which is {self[0]})"
 
+    def _repr_latex_(self) -> str:
+        chains, n = self.shape
+        return (r"$M_j(\theta_j)\, \ddot\theta_j = f_j(t, \theta_j, \dot\theta_j), "
+                rf"\quad j = 0, \ldots, {chains - 1}, \quad n = {n}$")
+
     @property
     def shape(self) -> tuple[int, int]:
         """``(chains, n)``, the shape of theta."""

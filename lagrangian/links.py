@@ -62,6 +62,10 @@ class Links(Frozen):
         side = "upright" if self.upright else "hanging"
         return f"{type(self).__name__}({len(self)} {self.model}, {', '.join(features)}, {side})"
 
+    def _repr_latex_(self) -> str:
+        side = "upright" if self.upright else "hanging"
+        return rf"$M(\theta)\, \ddot\theta = f(t, \theta, \dot\theta), \quad n = {len(self)}, \quad \text{{{side}}}$"
+
     # -- what the chain is --------------------------------------------------------------------------------
 
     @property

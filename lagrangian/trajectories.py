@@ -111,6 +111,9 @@ class Trajectories:
     def __repr__(self) -> str:
         return f"Trajectories({len(self)} chains" + (f", the first of which is {self[0]})" if self.members else ")")
 
+    def _repr_latex_(self) -> str:
+        return rf"$\theta^{{(j)}}(t), \quad j = 0, \ldots, {len(self) - 1}$" if self.members else r"$\emptyset$"
+
 
 def chains_and_states(system: Any, theta0: Any, omega0: Any) -> list[tuple[Any, Any, Any]] | None:
     """System, angles and rates of every chain where there are many, what is given once repeated; None for one chain."""

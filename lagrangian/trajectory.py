@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from sympy import Float, latex
 
 from .animation import animate
 from .errors import QuantityError
@@ -142,6 +143,12 @@ class Trajectory:
         span = f"{float(self.times[0]):.6g} to {float(self.times[-1]):.6g}"
         return (f"Trajectory({self.theta.shape[1]} rods, {len(self)} times from {span}, {self.method}, {self.steps} "
                 f"steps, error {float(self.error[-1]):.1e} rad)")
+
+    def _repr_latex_(self) -> str:
+        start, end, error = (latex(Float(float(x), digits)) for x, digits in (
+            (self.times[0], 6), (self.times[-1], 6), (self.error[-1], 2)))
+        return (rf"$\theta_1, \ldots, \theta_{{{self.theta.shape[1]}}}(t), \quad t = {start} \ldots {end}, "
+                rf"\quad \text{{error}} \approx {error}$")
 
 
 def labelled(motion: Any, members: Sequence[Trajectory], axes: tuple[str, ...]) -> Any:
