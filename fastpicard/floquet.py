@@ -123,7 +123,7 @@ class FloquetMatrix:
         return max(1, gcd(*(1 if count is None else count for count in counts)))
 
     def to_order(self, n: int) -> FloquetMatrix:
-        """The same for order ``n``, at the cost of the increments that are new."""
+        """The same for order ``n``, at the cost of the increments that are new; a lower one is computed anew."""
         return self._with(check_order(n), self.period, self.length)
 
     def over(self, turns: int, n: int) -> FloquetMatrix:
@@ -153,10 +153,7 @@ class FloquetMatrix:
         """Entry ``(i, j)`` in the engine's form; raises ShapeError where there is none."""
         i, j = place((i, j), self.shape)
         if (i, j) not in self._entries:
-            result: Modes = {}
-            for k in range(self.n + 1):
-                algebra.add_modes(result, algebra.frozen(self.increments.whole_turns(k, i, j), self._powers))
-            self._entries[i, j] = result
+            self._entries[i, j] = algebra.frozen(self.increments.whole_turns(i, j), self._powers)
         return self._entries[i, j]
 
     def _all(self) -> list[Modes]:

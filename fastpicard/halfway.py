@@ -89,21 +89,17 @@ def half_period(F: FloquetMatrix) -> list[list[Modes]]:
 
 
 def _entry(F: FloquetMatrix, i: int, j: int, powers: list[Polynomial]) -> Modes:
-    result: Modes = {}
-    for k in range(F.n + 1):
-        algebra.add_modes(result, algebra.frozen(_half_turns(F, k, i, j), powers))
-    return result
+    return algebra.frozen(_half_turns(F, i, j), powers)
 
 
-def _half_turns(F: FloquetMatrix, k: int, i: int, j: int) -> Modes:
-    """An entry of an increment after a time in which every angle makes half turns: powers of that time."""
+def _half_turns(F: FloquetMatrix, i: int, j: int) -> Modes:
+    """An entry after a time in which every angle makes half turns: powers of that time."""
     found = F.increments
     if isinstance(found, PackedIncrements):
         problem = found.problem
-        entry = without_frequencies(problem, found.levels[k].columns[j][i], _unit_turns(F, problem))
-        return to_modes(problem, [entry])
+        return to_modes(problem, without_frequencies(problem, found.iterate.sums[j][i], _unit_turns(F, problem)))
     modes: Modes = {}
-    for (kind, (frequency, phase), monomial), f in found.entry(k, i, j).items():
+    for (kind, (frequency, phase), monomial), f in found.total(i, j).items():
         odd = _turns(F, frequency) % 2
         turned, angle = orient(((), phase))
         algebra.add_reflected(modes, kind, turned, angle, monomial, -f if odd else f)

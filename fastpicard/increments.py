@@ -11,8 +11,8 @@ Where entries of a row of ``P`` are multiples of each other, their columns are a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Container, Iterator, Mapping
+from dataclasses import dataclass, field
 from math import gcd, lcm
 from typing import Any
 
@@ -38,39 +38,65 @@ Parts = tuple[tuple[Numbers, tuple[Term, ...]], ...]  # sums of columns, and wha
 
 @dataclass(frozen=True)
 class Column:
-    """One column of an increment: its entries, or their integrals, of which they are the derivatives."""
+    """One column of a matrix: entries, and integrals of entries, of which the derivatives are formed when asked for."""
 
     entries: dict[int, Entry]
     integrals: dict[int, Entry]
     divisors: Divisors
+    found: dict[int, Entry] = field(default_factory=dict)
 
     def __getitem__(self, i: int) -> Entry:
-        if i not in self.entries:
-            self.entries[i] = {monomial: derivative(rows, self.divisors)
-                               for monomial, rows in self.integrals[i].items()}
-        return self.entries[i]
+        if i not in self.integrals:
+            return self.entries[i]
+        if i not in self.found:
+            rates = {monomial: derivative(rows, self.divisors) for monomial, rows in self.integrals[i].items()}
+            _add_entry(rates, self.entries.get(i, {}))
+            self.found[i] = rates
+        return self.found[i]
+
+    def add(self, other: Column, but: Container[int] = ()) -> None:
+        """Add another column in place, but for some of its entries."""
+        for i, entry in other.entries.items():
+            if i not in but:
+                _add_entry(self.entries.setdefault(i, {}), entry)
+        for i, entry in other.integrals.items():
+            _add_entry(self.integrals.setdefault(i, {}), entry)
+
+
+def _add_entry(target: Entry, entry: Entry) -> None:
+    for monomial, rows in entry.items():
+        if monomial in target:
+            add_rows(target[monomial], rows)
+        else:
+            target[monomial] = dict(rows)
 
 
 @dataclass(frozen=True)
-class Level:
-    """The increment ``I_m``: column by column its entries."""
+class Iterate:
+    """``Phi_n``, and the increment ``I_n`` to go on from: column by column."""
 
     order: int
-    columns: tuple[Column, ...]
+    sums: tuple[Column, ...]
+    newest: tuple[Column, ...]
 
 
-def levels(p: Problem, n: int, known: tuple[Level, ...] = ()) -> tuple[Level, ...]:
-    """``I_0 .. I_n``, going on from those already known."""
-    known = known[:n + 1] or (first_level(p),)
-    steps = _steps(p)
-    columns = [_next_columns(p, column, steps, n + 1 - len(known)) for column in known[-1].columns]
-    return (*known, *(Level(m, new) for m, new in enumerate(zip(*columns, strict=True), len(known))))
+def iterate(p: Problem, n: int, known: Iterate | None = None) -> Iterate:
+    """``Phi_n``, going on from an iterate of lower order; of the increments only the last is kept."""
+    if known is None or known.order > n:
+        known = _first(p)
+    if known.order == n:
+        return known
+    steps, count = _steps(p), n - known.order
+    pairs = [_further(p, steps, count, total, column) for total, column in zip(known.sums, known.newest, strict=True)]
+    sums, newest = zip(*pairs, strict=True)
+    return Iterate(n, sums, newest)
 
 
-def first_level(p: Problem) -> Level:
-    """``I_0``: the columns ``x(0)``."""
-    return Level(0, tuple(Column({i: _constants(terms) for i, terms in enumerate(column)}, {}, Divisors(p, 1))
-                          for column in p.start))
+def _first(p: Problem) -> Iterate:
+    """``Phi_0 = I_0``: the columns ``x(0)``."""
+    columns = tuple(Column({i: _constants(terms) for i, terms in enumerate(column)}, {}, Divisors(p, 1))
+                    for column in p.start)
+    return Iterate(0, columns, columns)
 
 
 def _constants(terms: tuple[Term, ...]) -> Entry:
@@ -95,10 +121,9 @@ class _Step:
     once: Divisors
     twice: Divisors | None
 
-    @property
-    def columns(self) -> list[int]:
-        """All columns that the row takes."""
-        return [j for numbers, _ in self.parts for j, _ in numbers]
+    def is_found(self, column: Column) -> bool:
+        """Whether integrals of a column are known, of which the integral of this row is a sum."""
+        return self.constant and all(j in column.integrals for numbers, _ in self.parts for j, _ in numbers)
 
 
 def _steps(p: Problem) -> list[_Step]:
@@ -130,13 +155,20 @@ def _number(c: Any) -> Any:
     return int(c.p) if c.q == 1 else c
 
 
-def _next_columns(p: Problem, column: Column, steps: list[_Step], count: int) -> list[Column]:
-    """Integrals of ``P`` times a column, again and again; one column at a time, for its last numbers are at hand."""
-    result = []
+def _further(p: Problem, steps: list[_Step], count: int, total: Column, column: Column) -> tuple[Column, Column]:
+    """Add so many integrals of ``P`` times a column; one column at a time, for its last numbers are at hand.
+
+    What is a sum of integrals is added up when these have been.
+    """
+    sums = Column({}, {}, total.divisors)
     for left in reversed(range(count)):
+        found = {i for i, step in enumerate(steps) if step.is_found(column)}
         column = _next_column(p, column, steps, last=not left)
-        result.append(column)
-    return result
+        sums.add(column, found)
+    known = {i: dict(_product(p, step.parts, sums.integrals)) for i, step in enumerate(steps) if step.is_found(sums)}
+    sums.add(Column(known, {}, total.divisors))
+    sums.add(total)
+    return sums, column
 
 
 def _next_column(p: Problem, column: Column, steps: list[_Step], last: bool) -> Column:
@@ -146,7 +178,7 @@ def _next_column(p: Problem, column: Column, steps: list[_Step], last: bool) -> 
     for i, step in enumerate(steps):
         if step.twice is not None and not last:
             integrals[i] = integral(_product(p, step.parts, column), step.twice)
-        elif step.constant and all(j in column.integrals for j in step.columns):
+        elif step.is_found(column):
             entries[i] = dict(_product(p, step.parts, column.integrals))
         else:
             entries[i] = integral(_product(p, step.parts, column), step.once)

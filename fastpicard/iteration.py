@@ -8,7 +8,7 @@ from flint import fmpq
 
 from fastpicard import modes as algebra
 from fastpicard.coordinates import Problem, problem
-from fastpicard.increments import Level, levels
+from fastpicard.increments import Iterate, iterate
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Modes
 from fastpicard.ring import ONE
@@ -17,57 +17,60 @@ from fastpicard.unpacking import to_modes, without_frequencies
 
 @dataclass(frozen=True)
 class PackedIncrements:
-    """``I_0 .. I_n`` from :mod:`fastpicard.increments`."""
+    """The sum ``I_0 + .. + I_n`` and ``I_n`` from :mod:`fastpicard.increments`."""
 
     problem: Problem
-    levels: tuple[Level, ...]
+    iterate: Iterate
 
     def to_order(self, n: int) -> PackedIncrements:
-        """The same up to order ``n``; only what is new is computed."""
-        return PackedIncrements(self.problem, levels(self.problem, n, self.levels))
+        """The same up to order ``n``; only what is new is computed, but of a lower order everything."""
+        return PackedIncrements(self.problem, iterate(self.problem, n, self.iterate))
 
-    def entry(self, k: int, i: int, j: int) -> Modes:
-        """Entry ``(i, j)`` of ``I_k``."""
-        return to_modes(self.problem, [self.levels[k].columns[j][i]])
+    def newest(self, i: int, j: int) -> Modes:
+        """Entry ``(i, j)`` of ``I_n``."""
+        return to_modes(self.problem, self.iterate.newest[j][i])
 
     def total(self, i: int, j: int) -> Modes:
-        """Entry ``(i, j)`` of the sum of all increments."""
-        return to_modes(self.problem, (level.columns[j][i] for level in self.levels))
+        """Entry ``(i, j)`` of the sum."""
+        return to_modes(self.problem, self.iterate.sums[j][i])
 
-    def whole_turns(self, k: int, i: int, j: int) -> Modes:
+    def whole_turns(self, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
-        return to_modes(self.problem, [without_frequencies(self.problem, self.levels[k].columns[j][i])])
+        return to_modes(self.problem, without_frequencies(self.problem, self.iterate.sums[j][i]))
 
 
 @dataclass(frozen=True)
 class SeriesIncrements:
-    """``I_0 .. I_n`` as matrices of series: incommensurate frequencies, powers of ``t`` in ``P``."""
+    """The sum and ``I_n`` as matrices of series: incommensurate frequencies, powers of ``t`` in ``P``."""
 
     P: SeriesMatrix
-    levels: tuple[SeriesMatrix, ...]
+    first: SeriesMatrix
+    order: int
+    sums: SeriesMatrix
+    increment: SeriesMatrix
 
     def to_order(self, n: int) -> SeriesIncrements:
-        """The same up to order ``n``; only what is new is computed."""
-        levels = list(self.levels[:n + 1])
-        while len(levels) <= n:
-            levels.append((self.P @ levels[-1]).integrate())
-        return SeriesIncrements(self.P, tuple(levels))
+        """The same up to order ``n``; only what is new is computed, but of a lower order everything."""
+        if n < self.order:
+            return in_series(self.P, self.first, n)
+        sums, newest = self.sums, self.increment
+        for _ in range(n - self.order):
+            newest = (self.P @ newest).integrate()
+            sums = sums + newest
+        return SeriesIncrements(self.P, self.first, n, sums, newest)
 
-    def entry(self, k: int, i: int, j: int) -> Modes:
-        """Entry ``(i, j)`` of ``I_k``."""
-        return self.levels[k].rows[i][j]
+    def newest(self, i: int, j: int) -> Modes:
+        """Entry ``(i, j)`` of ``I_n``."""
+        return self.increment.rows[i][j]
 
     def total(self, i: int, j: int) -> Modes:
-        """Entry ``(i, j)`` of the sum of all increments."""
-        modes: Modes = {}
-        for level in self.levels:
-            algebra.add_modes(modes, level.rows[i][j])
-        return modes
+        """Entry ``(i, j)`` of the sum."""
+        return self.sums.rows[i][j]
 
-    def whole_turns(self, k: int, i: int, j: int) -> Modes:
+    def whole_turns(self, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
         modes: Modes = {}
-        for (kind, (_, phase), monomial), f in self.entry(k, i, j).items():
+        for (kind, (_, phase), monomial), f in self.total(i, j).items():
             turned, angle = algebra.orient(((), phase))
             algebra.add_reflected(modes, kind, turned, angle, monomial, f)
         return modes
@@ -80,9 +83,13 @@ def first_increments(P: SeriesMatrix, columns: list[tuple[Modes, ...]], n: int) 
     """``I_0 .. I_n`` for the given columns, packed where the frequencies of ``P`` have a common unit."""
     packed = problem(P.rows, columns)
     if packed is not None:
-        return PackedIncrements(packed, ()).to_order(n)
-    rows = tuple(zip(*columns, strict=True))
-    return SeriesIncrements(P, (SeriesMatrix(rows, P.t),)).to_order(n)
+        return PackedIncrements(packed, iterate(packed, n))
+    return in_series(P, SeriesMatrix(tuple(zip(*columns, strict=True)), P.t), n)
+
+
+def in_series(P: SeriesMatrix, first: SeriesMatrix, n: int) -> SeriesIncrements:
+    """``I_0 .. I_n`` from ``I_0`` by products and integrals of series."""
+    return SeriesIncrements(P, first, 0, first, first).to_order(n)
 
 
 def identity_columns(size: int) -> list[tuple[Modes, ...]]:

@@ -194,7 +194,7 @@ class PicardIterate:
         return fast_picard, (self.P, self.t, self.x0, self.n, t0)
 
     def to_order(self, n: int) -> PicardIterate:
-        """The iterate of order ``n``, at the cost of the increments that are new."""
+        """The iterate of order ``n``, at the cost of the increments that are new; a lower one is computed anew."""
         n = check_order(n)
         new = object.__new__(type(self))
         for name, value in (("t", self.t), ("n", n), ("shape", self.shape),
@@ -204,11 +204,15 @@ class PicardIterate:
         return new
 
     def increment(self, k: int) -> SeriesMatrix:
-        """``I_k``, for ``k`` from 0 to ``n``: the difference of the iterates of order ``k`` and ``k - 1``."""
+        """``I_k``, for ``k`` from 0 to ``n``: the difference of the iterates of order ``k`` and ``k - 1``.
+
+        Only the last increment is kept, so that memory grows as the terms of the iterate; others are computed anew.
+        """
         if not 0 <= check_order(k) <= self.n:
             raise BadInputError(f"the increments go from 0 to {self.n}, but k is {k}.  Use to_order({k}) first.")
         rows, columns = self.shape
-        return SeriesMatrix(tuple(tuple(self.increments.entry(k, i, j) for j in range(columns)) for i in range(rows)),
+        found = self.increments.to_order(k)
+        return SeriesMatrix(tuple(tuple(found.newest(i, j) for j in range(columns)) for i in range(rows)),
                             self.t).shifted(self._back())
 
     def _back(self) -> Polynomial:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 from flint import fmpq_poly
@@ -40,9 +40,9 @@ def _nowhere(angle: int) -> int:
     return 0
 
 
-def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
-    """The sum of entries of increments as a series in ``t = s / unit``."""
-    total = _total(p, entries)
+def to_modes(p: Problem, entry: Entry) -> Modes:
+    """An entry as a series in ``t = s / unit``."""
+    total = _unpacked(p, entry)
     waves = {key: (key & 1, *p.angle(key >> 1)) for key in set().union(*total.values())}
     modes = {(kind, angle, monomial): reflected(kind, row) if turned else row
              for monomial, rows in total.items() for key, row in rows.items() if row
@@ -50,19 +50,18 @@ def to_modes(p: Problem, entries: Iterable[Entry]) -> Modes:
     return modes if p.coordinates.unit == (ONE, 1) else _in_time(modes, *p.coordinates.unit)
 
 
-def _total(p: Problem, entries: Iterable[Entry]) -> dict[Monomial, Rows]:
-    """The sum of entries, which is cheaper to form before angles are unpacked."""
-    total: dict[Monomial, Rows] = {}
-    for entry in entries:
-        for packed, rows in entry.items():
-            factor, monomial = p.monomial(packed)
-            if factor != 1:
-                rows = {key: row * factor for key, row in rows.items()}
-            if monomial in total:
-                add_rows(total[monomial], rows)
-            else:
-                total[monomial] = dict(rows)
-    return total
+def _unpacked(p: Problem, entry: Entry) -> dict[Monomial, Rows]:
+    """The rows of true monomials, of which several packed ones may be multiples."""
+    result: dict[Monomial, Rows] = {}
+    for packed, rows in entry.items():
+        factor, monomial = p.monomial(packed)
+        if factor != 1:
+            rows = {key: row * factor for key, row in rows.items()}
+        if monomial in result:
+            rows = dict(rows)
+            add_rows(rows, result[monomial])
+        result[monomial] = rows
+    return result
 
 
 def _in_time(modes: Modes, unit: Monomial, number: Any) -> Modes:
