@@ -28,27 +28,29 @@ Program = tuple[tuple[int, int], ...]
 def program(exponents: Sequence[Exponents]) -> Program:
     """The steps for the monomials with these exponents, in their order; the first variable is the outermost."""
     steps: list[tuple[int, int]] = []
-    if exponents:
-        _append(steps, dict(zip(exponents, range(len(exponents)), strict=True)), 0)
+    _append(steps, [([(j, e) for j, e in enumerate(m) if e], place) for place, m in enumerate(exponents)])
     return tuple(steps)
 
 
-def _append(steps: list[tuple[int, int]], places: dict[Exponents, int], variable: int) -> None:
-    """Append the steps that leave the sum of these monomials, without the variables before ``variable``."""
-    if len(places) == 1 and not any(next(iter(places))[variable:]):
-        steps.append((PUSH, next(iter(places.values()))))
-        return
-    rows: dict[int, dict[Exponents, int]] = {}
-    for m, place in places.items():
-        rows.setdefault(m[variable], {})[m] = place
-    degrees = sorted(rows, reverse=True)
-    for e, below in zip(degrees, [*degrees[1:], 0], strict=True):
-        if e == degrees[0]:
-            _append(steps, rows[e], variable + 1)
+def _append(steps: list[tuple[int, int]], terms: list[tuple[list[tuple[int, int]], int]]) -> None:
+    """Append the steps that leave the sum of these monomials, given as lists of (variable, exponent)."""
+    rows: dict[int, dict[int, list[Any]]] = {}
+    constants = []
+    for m, place in terms:
+        if m:
+            rows.setdefault(m[0][0], {}).setdefault(m[0][1], []).append((m[1:], place))
         else:
-            _append(steps, rows[e], variable + 1)
-            steps[-1:] = [(PLUS, steps[-1][1])] if steps[-1][0] == PUSH else [steps[-1], (ADD, 0)]
-        steps.extend([(TIMES, variable)] * (e - below))
+            constants.append(place)
+    for count, variable in enumerate(sorted(rows)):
+        degrees = sorted(rows[variable], reverse=True)
+        for e, below in zip(degrees, [*degrees[1:], 0], strict=True):
+            _append(steps, rows[variable][e])
+            if e != degrees[0]:
+                steps[-1:] = [(PLUS, steps[-1][1])] if steps[-1][0] == PUSH else [steps[-1], (ADD, 0)]
+            steps.extend([(TIMES, variable)] * (e - below))
+        if count:
+            steps.append((ADD, 0))
+    steps.extend([(PLUS if rows else PUSH, place) for place in constants])
 
 
 def run(steps: Program, coefficients: Sequence[Any], variables: Sequence[Any]) -> Any:
