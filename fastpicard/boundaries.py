@@ -19,26 +19,27 @@ import math
 import numbers
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from flint import arb, ctx, fmpq
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol, latex
 
+from fastpicard import modes as algebra
 from fastpicard.charted import axes_of, fixed_numbers, mapping_of, point_of
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Values, check_digits, exact_values, refine, to_number, upper_float
+from fastpicard.evaluate import Values, check_digits, exact_values, free_symbols, refine, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
-from fastpicard.harmonics import harmonics
 from fastpicard.latex import meaning, number, sentence, shown
-from fastpicard.modes import Modes
+from fastpicard.modes import COS, Modes
 from fastpicard.precision import working
 from fastpicard.remainder import a_posteriori
-from fastpicard.ring import expression_of
+from fastpicard.ring import Monomial, expression_of, multiply_monomials, symbols_of
 from fastpicard.series import PoissonSeries
 
 Matrix = list[list[Any]]
@@ -206,6 +207,12 @@ class Boundary:
         slopes = refine(lambda: self._dual(exact, self.symbols)[1:], None)
         return {s: to_number(x, None) for s, x in zip(self.symbols, slopes, strict=True)}
 
+    @cached_property
+    def parameters(self) -> set[Symbol]:
+        """All of ``P`` and its period, which the polynomial of a low order may not contain."""
+        occurring = (free_symbols(modes) for row in self._F.P.rows for modes in row)
+        return set(self.symbols).union(symbols_of(self._F.length), *occurring)
+
     def _of(self, symbol: Symbol | None) -> Collapsed:
         if symbol not in self._collapsed:
             rows = [_derivative(modes, symbol) for row in self._entries for modes in row]
@@ -249,36 +256,52 @@ class Boundary:
                                 "Choose one of these.")
         if not isinstance(bracket, tuple | list) or len(bracket) != 2:
             raise BadTypeError(f"the bracket must be two numbers (lo, hi), but it is {bracket!r}.  Give both ends.")
-        others = {s: v for s, v in mapping_of(fixed).items() if s != x}
-        exact = exact_values({**others, x: 0}, self.symbols, self._F.t)
+        if x in mapping_of(fixed):
+            raise BadInputError(f"the unknown is sought, but {x} is fixed at {mapping_of(fixed)[x]}.  Leave it out of "
+                                "fixed.")
+        exact = exact_values({**mapping_of(fixed), x: 0}, self.parameters, self._F.t)
         with working(dps_to_prec(wanted) + 64):
             value, count = zero(lambda here: self._dual({**exact, x: here}, (x,)), bracket, arb(10) ** -wanted)
             dual = self._dual({**exact, x: value}, (x, *(s for s in self.symbols if s != x)))
             slopes = {s: to_number(-d / dual[1], None)
                       for s, d in zip((s for s in self.symbols if s != x), dual[2:], strict=True)}
             rounded = to_number(value, None if wanted <= 15 else wanted)
-            lost = abs(value - exact_ball(rounded)) + arb(self._proved(x, exact, value, dual))
+            lost = abs(value - exact_ball(rounded)) + arb(self._proved(x, exact, value, dual[1]))
             return Root(rounded, upper_float(lost.upper()) if lost.is_finite() else float("inf"), count + 1, slopes)
 
-    def _proved(self, x: Symbol, exact: dict[Any, Any], value: Any, dual: list[Any]) -> float:
-        """A distance at which the true function is proved to have different signs on both sides."""
-        values = {**exact, x: value}
-        period = self._F.at(values)[1]
-        bound = a_posteriori(harmonics(self._F.P, values), period / 2 if self._half else period, self._F.n)
-        largest = max((entry.upper() for entry in bound.entries()), default=arb(0))
-        slack = [2 * largest] * (len(self._entries) * self._columns)
-        at = self._dual(values, (), slack)[0]
-        if dual[1].contains(0) or not at.is_finite():
-            return float("inf")
-        distance = (2 * abs(at) / abs(dual[1]) + abs(value) * arb(2) ** (8 - ctx.prec)).upper()
-        for _ in range(3):
-            with working(ctx.prec + 32):
-                left, right = (self._dual({**values, x: (value + side * distance).mid()}, (), slack)[0]
-                               for side in (-1, 1))
-            if left * right < 0 and abs(distance) < abs(value) + 1:
-                return upper_float(distance)
-            distance *= 4
+    def _proved(self, x: Symbol, exact: dict[Any, Any], value: Any, slope: Any) -> float:
+        """A distance at which the true function is proved to have different signs on both sides, and none is a pole.
+
+        The remainder is that of the whole interval, which is made as wide as need be.
+        """
+        size = abs(value) if value != 0 else arb(1)
+        radius, least = size * arb(2) ** -40, size * arb(2) ** (8 - ctx.prec)
+        for _ in range(6):
+            slack = self._slack({**exact, x: arb(value.mid(), radius.upper())})
+            if slack is None or slope.contains(0) or not radius <= abs(value) + 1:
+                break
+            at = self._dual({**exact, x: value}, (), slack)[0]
+            distance = (2 * abs(at) / abs(slope) + least).upper()
+            if not distance.is_finite():
+                break
+            if distance <= radius:
+                with working(ctx.prec + 32):
+                    left, right = (self._dual({**exact, x: (value + side * distance).mid()}, (), slack)[0]
+                                   for side in (-1, 1))
+                if left < 0 < right or right < 0 < left:
+                    return upper_float(distance)
+            radius = 2 * max(radius, distance)
         return float("inf")
+
+    def _slack(self, values: dict[Any, Any]) -> list[Any] | None:
+        """The remainder for every entry; None where ``P`` has a pole in a ball."""
+        try:
+            P, period = self._F.at(values)
+        except BadInputError:
+            return None
+        bound = a_posteriori(P, period / 2 if self._half else period, self._F.n)
+        largest = max((entry.upper() for entry in bound.entries()), default=arb(0))
+        return [largest] * (len(self._entries) * self._columns)
 
     # -- curves ------------------------------------------------------------------
 
@@ -341,17 +364,31 @@ def _rows(numbers: list[Any], columns: int) -> Matrix:
 
 
 def _derivative(modes: Modes, symbol: Symbol) -> Modes:
-    """The derivative of a polynomial by a parameter."""
+    """The derivative of constants by a parameter, in monomials and in phases: ``cos' phi = -phi' sin phi``."""
     result: Modes = {}
     for (kind, angle, monomial), f in modes.items():
-        for k, (g, e) in enumerate(monomial):
-            if expression_of(g) == symbol:
-                lower = (*monomial[:k], *(((g, e - 1),) if e != 1 else ()), *monomial[k + 1:])
-                result[kind, angle, lower] = f * fmpq(e.numerator, e.denominator)
-            elif symbol in expression_of(g).free_symbols:
-                raise BadTypeError(f"a boundary is differentiated by parameters that occur as powers, but {symbol} "
-                                   f"occurs in {expression_of(g)}.  Name that by a symbol of its own.")
+        for factor, lower in _rate(monomial, symbol):
+            algebra.add_mode(result, kind, angle, lower, f * factor)
+        for m, c in angle[1]:
+            for factor, lower in _rate(m, symbol):
+                number, product = multiply_monomials(monomial, lower)
+                sign = -1 if kind == COS else 1
+                algebra.add_mode(result, 1 - kind, angle, product,
+                                 f * (sign * factor * number * fmpq(c.numerator, c.denominator)))
     return result
+
+
+def _rate(monomial: Monomial, symbol: Symbol) -> list[tuple[Any, Monomial]]:
+    """The derivative of a monomial, as number and monomial; nothing where it is 0."""
+    found = []
+    for k, (g, e) in enumerate(monomial):
+        if expression_of(g) == symbol:
+            lower = (*monomial[:k], *(((g, e - 1),) if e != 1 else ()), *monomial[k + 1:])
+            found.append((fmpq(e.numerator, e.denominator), lower))
+        elif symbol in expression_of(g).free_symbols:
+            raise BadTypeError(f"a boundary is differentiated by parameters that occur as powers, but {symbol} "
+                               f"occurs in {expression_of(g)}.  Name that by a symbol of its own.")
+    return found
 
 
 class Dual:

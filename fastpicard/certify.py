@@ -126,12 +126,22 @@ class CertifiedChart:
         ------
         BadInputError
             if the tubes are of other parameters, or a mode is not two powers that can be solved for both axes.
+        BadTypeError
+            if these are no tubes, or ``modes`` no list of dictionaries.
         """
+        if not isinstance(tubes, Tubes):
+            raise BadTypeError(f"the lines are those of Tubes, but these are {tubes!r}.  Use tubes(F, x, y).")
         names = tubes.x[0], tubes.y[0]
         axes = self.x.symbol, self.y.symbol
         if modes is None and names != axes:
             raise BadInputError(f"the tubes must be in the plane of the chart's axes {axes}, but they are in that of "
                                 f"{names}.  Give the modes that lead from one to the other.")
+        if modes is not None and not (isinstance(modes, list | tuple) and all(isinstance(m, Mapping) for m in modes)):
+            raise BadTypeError(f"modes must be a list of dictionaries, but they are {modes!r}.  Use [{{a: -1/v**2}}].")
+        for mode in modes or ():
+            if not set(names) <= set(mode):
+                raise BadInputError(f"a mode must give both parameters {names} of the tubes, but it is {mode}.  Add "
+                                    "the other one.")
         given = [piece.points(9 if modes is None else 2001) for piece in tubes.pieces]
         lines = [numpy().array(line) for line in given] if modes is None else [
             images(mode, names, axes, line) for mode in modes for line in given]

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from flint import arb, arb_mat
+from flint import arb, arb_mat, fmpq
 from sympy import Symbol
 
 from fastpicard.boundaries import Boundary
-from fastpicard.charted import mapping_of, point_of
+from fastpicard.charted import fixed_numbers, point_of
 from fastpicard.curves import exact_ball, resolved
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Values, exact_values
-from fastpicard.harmonics import harmonics
+from fastpicard.evaluate import Point, Values, exact_values
+from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 from fastpicard.remainder import a_priori
+from fastpicard.ring import Monomial, expression_of, symbols_of
 
 EXPONENTS = (-60, -48, -36, -24)  # of 2: half the sides of the boxes that are tried
 
@@ -52,7 +53,7 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     -----
     Newton's operator in balls, ``N = c - J(X)**-1 (f, g)(c)``: if it maps the box X into itself there is one zero in
     it.  The remainders of the iterates of f and of g are in both, over the time that each takes; those of J by Cauchy,
-    from parameters larger by 1.
+    from complex parameters within 1, or half the way to a pole.
 
     Examples
     --------
@@ -71,7 +72,7 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
         raise BadTypeError(f"curves cross in a plane of two Symbols, but they are {x!r} and {y!r}.  Use "
                            "crossing(f, g, a, b, (0, 1)), say.")
     names = (x, y)
-    exact = exact_values({**mapping_of(fixed), x: 0, y: 0}, f.symbols + g.symbols, f._F.t)
+    exact = exact_values({**fixed_numbers(fixed, names), x: 0, y: 0}, f.parameters | g.parameters, f._F.t)
     with working(192):
         center = [exact_ball(z) for z in point_of(start)]
         for part in (f, g):  # as many bits as cancel in them
@@ -85,7 +86,7 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
             center = [(c - move[k, 0]).mid() for k, c in enumerate(center)]
             if all(abs(move[k, 0]) < arb(2) ** -120 for k in (0, 1)):
                 break
-        slacks = [_wide_remainder(part, {**exact, **dict(zip(names, center, strict=True))}) for part in (f, g)]
+        slacks = [_wide_remainder(part, {**exact, **dict(zip(names, center, strict=True))}, names) for part in (f, g)]
         for exponent in EXPONENTS:
             box = [c + arb(0, arb(2) ** exponent) for c in center]
             value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slacks)
@@ -108,13 +109,63 @@ def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[A
     return arb_mat([[row[0]] for row in rows]), arb_mat([row[1:] for row in rows])
 
 
-def _wide_remainder(f: Boundary, values: dict[Any, Any]) -> Any:
-    """The remainder for all complex parameters within 1 of the largest box, hence of derivatives there, too."""
-    wide = {s: arb(0, (abs(v if isinstance(v, arb) else arb(v)) + 1 + arb(2) ** max(EXPONENTS)).upper())
-            for s, v in values.items()}
-    period = f._F.at(values)[1]
-    bound = a_priori(harmonics(f._F.P, wide), period / 2 if f._half else period, f._F.n)
-    return max((entry.upper() for entry in bound.entries()), default=arb(0))
+def _wide_remainder(part: Boundary, values: dict[Any, Any], names: tuple[Symbol, Symbol]) -> Any:
+    """The remainder of a function and of its derivatives in all boxes that are tried.
+
+    By Cauchy's inequality derivatives are at most the remainder for complex parameters within ``r`` of the box, over
+    ``r``: 1, or less where a pole is near.
+    """
+    F = part._F
+    if symbols_of(F.length) & set(names):
+        raise BadInputError(f"curves cross where the period is one for all parameters, but it is {F.period}.  Measure "
+                            "time in units of it.")
+    powers = {e for row in F.P.rows for modes in row for _, angle, own in modes
+              for m in (own, *dict(angle[0]), *dict(angle[1])) for g, e in m if expression_of(g) in names}
+    point = Point(arb(0), values)
+    sizes = {s: abs(exact_ball(values[s])) for s in names}
+    radius = min([arb(1), *((x / 2).mid() for x in sizes.values() if any(e < 0 or e != int(e) for e in powers))])
+    if not radius > 0:
+        raise BadInputError(f"P must be smooth where curves cross, but it has a pole or a root at "
+                            f"{dict(zip(names, map(str, sizes.values()), strict=True))}.  Start elsewhere.")
+    wide = {s: x + arb(0, radius + arb(2) ** max(EXPONENTS)) for s, x in sizes.items()}
+    period = F.at(values)[1] / (2 if part._half else 1)
+    waves = {(i, j): [(arb(0), sum((_largest(mode, f, point, wide, period) for mode, f in modes.items()), arb(0)),
+                       arb(0))]
+             for i, row in enumerate(F.P.rows) for j, modes in enumerate(row) if modes}
+    bound = a_priori(Harmonics(F.shape[0], waves), period, F.n)
+    return max((entry.upper() for entry in bound.entries()), default=arb(0)) / radius
+
+
+def _largest(mode: Any, f: Any, point: Point, wide: dict[Symbol, Any], period: Any) -> Any:
+    """How large a mode of ``P`` is for complex parameters whose absolute values, and their changes, lie in the balls.
+
+    ``|cos z| <= exp |Im z|``, and an angle is real at the middle.
+    """
+    _, (frequency, phase), monomial = mode
+    turned = sum((abs(arb(fmpq(c.numerator, c.denominator))) * _change(m, point, wide) * time
+                  for form, time in ((frequency, period), (phase, arb(1))) for m, c in form), arb(0))
+    return abs(arb(f[0])) * _size(monomial, point, wide) * turned.exp()
+
+
+def _change(monomial: Monomial, point: Point, wide: dict[Symbol, Any]) -> Any:
+    """``|m(z) - m(center)|``: the difference of absolute values where no exponent is negative or broken."""
+    exponents = [e for g, e in monomial if expression_of(g) in wide]
+    if not exponents:
+        return arb(0)
+    here, there = abs(point.monomial(monomial)), _size(monomial, point, wide)
+    return there - here if all(e > 0 and e == int(e) for e in exponents) else there + here
+
+
+def _size(monomial: Monomial, point: Point, wide: dict[Symbol, Any]) -> Any:
+    size = arb(1)
+    for g, e in monomial:
+        s = expression_of(g)
+        if s in wide:
+            end = (wide[s].upper() if e > 0 else wide[s].lower())
+            size = size * (end ** int(e) if e == int(e) else (end.log() * fmpq(e.numerator, e.denominator)).exp())
+        else:
+            size = size * abs(point.monomial(((g, e),)))
+    return size
 
 
 __all__ = ["crossing"]

@@ -105,7 +105,7 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
     Raises
     ------
     BadInputError
-        if it goes on for more steps than a hundred sides of the rectangle take.
+        if it goes on for more steps than a hundred sides of the rectangle take, or has no direction at its start.
     """
     np, plane = numpy(), Plane(function, box)
     with working(128):
@@ -114,6 +114,10 @@ def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array
             return None
         ahead, closes = _one_way(plane, first, 1.0, step)
         behind = [] if closes else _one_way(plane, first, -1.0, step)[0]
+        inner = all(SHORTEST < c < 1 - SHORTEST for c in first[0])
+        if not ahead and not behind and (inner or plane.is_double(first)):
+            raise BadInputError(f"a curve goes both ways from its start, but none leaves {start}: curves cross there, "
+                                "or it is a point of its own.  Start elsewhere on the curve.")
     point, gradient = first
     back = [(other, _times(-1.0, tangent)) for other, tangent in reversed(behind)]
     track = [*back, (point, _along(gradient)), *ahead]

@@ -72,9 +72,13 @@ class Tube:
     radius: float = 0.0
 
     def __call__(self, b: Any, digits: int | None = None) -> Any:
-        """A ball that contains the true ``a(b)``, or with ``digits`` an mpf."""
+        """A ball that contains the true ``a(b)``, or with ``digits`` an mpf; raises BadInputError beyond the piece."""
         with working(dps_to_prec(40)):
-            t = (ball(exact_number(b, "b")) - self.center) / self.half
+            here = ball(exact_number(b, "b"))
+            if here < self.lo or here > self.hi:
+                raise BadInputError(f"this piece of a boundary is proved for b from {self.lo} to {self.hi}, but b is "
+                                    f"{b}.  Choose the piece that holds it, or use at(b) of all tubes.")
+            t = (here - self.center) / self.half
             value = arb_poly(list(self.coefficients))(t) + arb(0, arb(self.radius))
             return value if digits is None else to_number(value, digits)
 
@@ -121,11 +125,19 @@ class Tubes:
     order: int
 
     def at(self, b: Any) -> list[tuple[str, str, Any]]:
-        """(label, parity, ball of a) of every boundary in the rectangle at one b, ascending."""
-        b_float = float(ball(exact_number(b, "b")))
+        """(label, parity, ball of a) of every boundary in the rectangle at one b, ascending.
+
+        Raises BadInputError where b is beyond the rectangle.
+        """
+        with working(dps_to_prec(40)):
+            here = ball(exact_number(b, "b"))
+        name, lo, hi = self.y
+        if here < lo or here > hi:
+            raise BadInputError(f"boundaries are known for {name} from {lo} to {hi}, but it is {b}.  Find tubes of a "
+                                "larger rectangle.")
         found: dict[tuple[str, str, float], Any] = {}
         for piece in self.pieces:
-            if piece.lo <= b_float <= piece.hi:
+            if not (here < piece.lo or here > piece.hi):
                 value = piece(b)
                 if not (value.upper() >= self.x[1] and value.lower() <= self.x[2]):
                     continue  # the piece leaves the rectangle

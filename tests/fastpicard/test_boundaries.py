@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given, settings, strategies as st
-from sympy import Matrix, Rational, cos, diff, eye, sin, zeros
+from sympy import Matrix, Rational, cos, diff, expand, eye, sin, zeros
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
@@ -51,6 +51,49 @@ def test_errors_of_rough_roots_hold_the_truth(order):
         assert root.error < 1e4 * abs(float(root.value) - true) + 1e-13
 
 
+def steep(power, c, waves, rest):
+    """x'' grows with a high power of a, so that the remainder of a low order does."""
+    return Matrix([[0, c * a**power + 1], [-waves * a**power * cos(2 * t) + rest, 0]])
+
+
+Q = Rational(99, 100) - (a - Rational(1, 5)) ** 2
+UNPROVED = [
+    (Matrix([[0, 1 / a], [-a / 4, 0]]), 12, 1, (-1, 2)),  # sin(pi/2) 2/a: no zero, but a pole
+    (Matrix([[0, 1 / a], [-expand(a * Q), 0]]), 7, 1, (Rational(3, 10), Rational(2, 5))),
+    (steep(6, Rational(19, 10), Rational(19, 10), a**2 - 2 * a / 5 - Rational(3957, 1000)), 9, 0, (1.1, 1.2)),
+    (steep(12, 1, Rational(33, 10), 5 * a**2 - 11 * a + Rational(3801, 1000)), 7, 0, (1.0, 1.1)),
+    (steep(12, 1, Rational(1, 500), a**2 / 2 - 3 * a / 10 - Rational(477, 500)), 4, 1, (-0.6, -0.5)),
+]
+
+
+@pytest.mark.parametrize("P, order, place, bracket", UNPROVED, ids=range(5))
+def test_a_root_of_the_iterate_alone_is_not_proved(P, order, place, bracket):
+    """The true function has one sign in the bracket and a pole or none near it: no distance may be claimed."""
+    F = FloquetMatrix(P, t, order)
+    root = boundaries(F)[place].root(a, bracket)
+    ends = {boundaries(F.to_order(30))[place]({a: end}) > 0 for end in bracket}
+
+    assert root.error == float("inf")
+    assert len(ends) == (2 if bracket[0] == -1 else 1)
+
+
+def test_a_root_at_zero_is_proved():
+    """y'' + a y: the function of the even solution is 0 at a = 0, exactly."""
+    root = boundaries(MATHIEU.to_order(30))[0].root(a, (-1, 1), {b: 0})
+
+    assert root.value == 0 and root.error < 1e-30
+
+
+def test_a_low_order_needs_all_parameters_for_its_error():
+    """Three iterates: one of the polynomials is free of b, and the true function is not."""
+    B = boundaries(FloquetMatrix(MATHIEU_P, t, 3))[1]
+
+    assert b not in B.symbols
+    assert B.root(a, (-2, 2), {b: Rational(1, 2)}).error == float("inf")
+    with pytest.raises(BadInputError, match="a is fixed at 3.  Leave it out"):
+        B.root(a, (-2, 2), {b: Rational(1, 2), a: 3})
+
+
 def test_half_period_factors_multiply_to_the_trace():
     """4 B C = trace - 2 and 4 A D = trace + 2 for the true matrix; here to what forty iterates leave."""
     even, odd, even_minus, odd_minus = boundaries(MATHIEU)
@@ -69,6 +112,31 @@ def test_gradients_are_those_of_the_exact_expression():
         for symbol, value in f.gradient(at).items():
             assert value == pytest.approx(float(diff(expression, symbol).subs(at)), rel=1e-12)
         assert f(at) == pytest.approx(float(expression.subs(at)), rel=1e-12)
+
+
+PHASED = Matrix([[0, 1], [-a - b * cos(t + c) - cos(2 * t) / 3, 0]])
+SINE = Matrix([[0, 1], [-Rational(1, 4) - 5 * a + Rational(499, 100) * sin(a) - b * cos(t), 0]])
+
+
+@pytest.mark.parametrize("P", [PHASED, SINE, PHASED.subs(c, c**2 * a + 1), SINE.subs(a, 2 * a)], ids=str)
+def test_gradients_know_phases_and_waves_of_parameters(P):
+    """cos(t + c), sin a: beside differences of the exact values."""
+    at, step = {a: Rational(1, 3), b: Rational(1, 2), c: Rational(7, 10)}, Rational(1, 10**8)
+    for B in boundaries(FloquetMatrix(P, t, 10)):
+        gradient = B.gradient({s: at[s] for s in B.symbols})
+        for s in B.symbols:
+            ends = [B({**at, s: at[s] + sign * step}, digits=40) for sign in (1, -1)]
+            assert gradient[s] == pytest.approx(float((ends[0] - ends[1]) / (2 * step)), rel=1e-9, abs=1e-12)
+
+
+def test_roots_and_curves_in_a_phase():
+    """The root in the phase is the crossing of the curve with the line; slopes are not 0."""
+    B = boundaries(FloquetMatrix(PHASED, t, 24))[0]
+    root = B.root(c, (0.3, 0.6), {a: 1, b: 1})
+    points, _ = B.follow((c, 0, 3), (a, 0.5, 1.5), (0.3, 1.0), {b: 1})
+
+    assert root.error < 1e-5 and abs(root.slopes[a]) > 1
+    assert len(points) > 20 and np.hypot(points[:, 0] - root.value, points[:, 1] - 1).min() < 0.03
 
 
 def test_slopes_are_those_of_the_curve():
@@ -112,6 +180,16 @@ def test_a_curve_goes_straight_on_where_it_crosses_another():
 
     assert abs(points[:, 0] - points[:, 1]).max() < 4e-12
     assert (points[[0, -1]] ** 2 == 1).all() and points[0, 0] == -points[-1, 0]
+
+
+def test_a_curve_does_not_start_where_others_cross_it():
+    """(0, 0) of two coupled rods, on an edge: the gradient vanishes, so that there is no direction."""
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-a - b * cos(t), -b / 4, 0, 0], [-b / 4, -2 * a - b * cos(t) / 3, 0, 0]])
+    B = boundaries(FloquetMatrix(P, t, 24))[0]
+
+    with pytest.raises(BadInputError, match="none leaves.*Start elsewhere on the curve"):
+        B.follow((a, -0.5, 1), (b, 0, 1), (0, 0.0))
+    assert len(B.follow((a, -0.5, 1), (b, 0, 1), (-0.02, 0.2))[0]) > 20
 
 
 @pytest.mark.parametrize("thin", [1, 100, 10**4, 10**6, 10**8])
@@ -210,6 +288,29 @@ def test_pockets_close_where_ince_says():
     assert (minus[b] ** 2).contains(8) and float(minus[b].rad()) < 1e-11
     with pytest.raises(BadInputError, match="cross"):
         crossing(even, odd, a, b, (-40, 0.1))
+
+
+def test_crossings_are_proved_beside_poles_and_in_waves_of_parameters():
+    """a = 1/v**2 in the pocket of Ince's equation; a - sin(a)/2 in place of a, where the crossing is a = b = 0."""
+    F = FloquetMatrix(Matrix([[0, 1], [-1 / v**2 - b * cos(t) - cos(2 * t), 0]]), t, 40)
+    found = crossing(*boundaries(F)[:2], v, b, (0.9, 1.4))
+    same = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t) - cos(2 * t), 0]]), t, 40)
+    expected = crossing(*boundaries(same)[:2], a, b, (1.25, 1.4))
+    assert (1 / found[v] ** 2).overlaps(expected[a]) and found[b].overlaps(expected[b])
+    assert float(found[v].rad()) < 1e-9
+
+    waves = FloquetMatrix(Matrix([[0, 1], [-Rational(1, 4) - a + sin(a) / 2 - b * cos(t), 0]]), t, 40)
+    found = crossing(*boundaries(waves)[2:], a, b, (0.01, 0.01))
+    assert found[a].contains(0) and found[b].contains(0) and float(found[a].rad()) < 1e-15
+
+
+def test_no_crossing_is_proved_of_the_rods_pole():
+    """Two equal rods, 1/v**2, from a place without one."""
+    B = boundaries(rods(12))
+    with pytest.raises(BadInputError, match="no crossing is proved there"):
+        crossing(B[0], B[1], h, v, (0.05, 25))
+    with pytest.raises(BadInputError, match="v is fixed at 1 and is also on an axis"):
+        crossing(B[0], B[1], h, v, (0.05, 25), {v: 1})
 
 
 @pytest.mark.parametrize("order", [12, 24])

@@ -125,6 +125,12 @@ def test_tubes_are_lines_of_charts_of_modes():
         proved.with_tubes(curves)
     with pytest.raises(BadInputError, match="determine"):
         proved.with_tubes(curves, [{a: h, b: h**2}])
+    for wrong, error, message in ((3, BadTypeError, "list of dictionaries, but they are 3"),
+                                  ([{a: h}], BadInputError, "must give both parameters .a, b. .* but it is {a: h}")):
+        with pytest.raises(error, match=message):
+            proved.with_tubes(curves, wrong)
+    with pytest.raises(BadTypeError, match="those of Tubes, but these are None"):
+        proved.with_tubes(None)
     matplotlib.pyplot.close(axes.figure)
 
 

@@ -64,6 +64,14 @@ def test_a_program_computes_the_sum_of_its_monomials(exponents, data):
     assert run(program([]), [], x) == 0
 
 
+def test_programs_of_very_many_variables_are_found_at_once():
+    """A thousand phases in a row, each in few monomials: no recursion through those that do not occur."""
+    single = [tuple(int(i == j) for i in range(1200)) for j in range(1200)]
+    steps = program([*single, tuple(2 * x for x in single[7]), (0,) * 1200])
+
+    assert run(steps, [1] * 1202, list(range(1200))) == sum(range(1200)) + 49 + 1
+
+
 class Counted:
     """A number that remembers for each monomial how many operations it went through."""
 

@@ -52,6 +52,16 @@ def test_what_leaves_the_rectangle_is_not_given_outside():
         assert [x[:2] for x in found.at(at)] == [x[1:] for x in numbers]
 
 
+def test_beyond_the_rectangle_nothing_is_claimed():
+    """Neither by a piece nor by all; pieces meet at their ends."""
+    found = tubes(MATHIEU, (a, 0, 0.3), (b, 0, 0.2), radius=1e-8)
+
+    for ask in (found.pieces[0], found.at):
+        with pytest.raises(BadInputError, match=r"b (is|from) .* is 5\."):
+            ask(5)
+    assert found.at(Rational(1, 5)) and found.at(found.pieces[0].hi)
+
+
 @pytest.mark.parametrize("terms, radius", [(2, 0.1), (3, 1e-2), (4, 1e-3), (6, 1e-4)])
 def test_tubes_of_few_terms_hold_the_characteristic_numbers(terms, radius, monkeypatch):
     """Where the defect, not the remainder, makes the radius: it holds the truth, and is not ten times too large."""
