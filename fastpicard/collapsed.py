@@ -120,7 +120,7 @@ class Collapsed:
         flat = iter(refine(lambda: [c for row in self.coefficients() for c in row], 40))
         rows = [[next(flat) for _ in row] for row in self._inner]
         scales = _scales([(m, c) for ms, row in zip(self.exponents, rows, strict=True)
-                          for m, c in zip(ms, row, strict=True) if c != 0], len(self.variables))
+                          for m, c in zip(ms, row, strict=True) if c != 0], self.variables)
         return scales, [[_rounded(c, -sum(map(int.__mul__, scales, m))) for m, c in zip(ms, row, strict=True)]
                         for ms, row in zip(self.exponents, rows, strict=True)]
 
@@ -184,14 +184,17 @@ def _parts(modes: Modes, names: dict[Variable, int]) -> dict[Exponents, Modes]:
     return parts
 
 
-def _scales(terms: list[tuple[Exponents, Any]], count: int) -> list[int]:
-    """Powers of two for the variables that make the coefficients as equal as may be, by least squares."""
-    if not terms or not count:
-        return [0] * count
-    np = numpy()
-    rows = np.array([[1, *m] for m, _ in terms], dtype=float)
-    sizes = np.array([_magnitude(c) for _, c in terms], dtype=float)
-    return [round(float(slope)) for slope in np.linalg.lstsq(rows, sizes, rcond=None)[0][1:]]
+def _scales(terms: list[tuple[Exponents, Any]], variables: list[Variable]) -> list[int]:
+    """Powers of two for the variables that make the coefficients as equal as may be, by least squares; waves keep 1."""
+    places = [j for j, variable in enumerate(variables) if variable.power]
+    scales = [0] * len(variables)
+    if terms and places:
+        np = numpy()
+        rows = np.array([[1, *(m[j] for j in places)] for m, _ in terms], dtype=float)
+        sizes = np.array([_magnitude(c) for _, c in terms], dtype=float)
+        for j, slope in zip(places, np.linalg.lstsq(rows, sizes, rcond=None)[0][1:], strict=True):
+            scales[j] = round(float(slope))
+    return scales
 
 
 def _magnitude(c: Any) -> int:
