@@ -22,7 +22,7 @@ from typing import Any
 from sympy import Symbol
 
 from fastpicard import plotting
-from fastpicard.charted import Axis, Charted, images, read_chart
+from fastpicard.charted import Axis, Charted, images, read_chart, refuse_phases
 from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError, BadTypeError
@@ -219,6 +219,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     start = time.perf_counter()
     seconds, undecided = _limit(seconds, "seconds"), _limit(undecided, "undecided")
     chart = read_chart(F, x, y, fixed, modes)
+    refuse_phases(chart.F)
     rule = criterion(chart.F)
     boxes, done = _by_convexity(chart)
     state = Halving(chart, rule, start, undecided, progress, done)

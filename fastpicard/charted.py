@@ -28,7 +28,7 @@ from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.evaluate import Values, exact_number, expression_ball, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.reading import as_expression
-from fastpicard.ring import Monomial, expression_of
+from fastpicard.ring import Monomial, expression_of, symbols_of
 
 Array = Any
 Exponents = tuple[int, int]
@@ -215,6 +215,14 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
              for row in F.P.rows for entry in row for _, _, monomial in entry] for k in (0, 1)]
     axes = (_with_power(first, used[0]), _with_power(second, used[1]))
     return Charted(F, axes, members, decoupled)
+
+
+def refuse_phases(F: FloquetMatrix) -> None:
+    """Raise BadInputError where a parameter is left in a phase, before an iterate is computed."""
+    phases = symbols_of(m for row in F.P.rows for entry in row for _, (_, phase), _ in entry for m, _ in phase)
+    if phases:
+        raise BadInputError(f"a chart is proved of polynomials in its parameters, but P has a phase with "
+                            f"{', '.join(sorted(map(str, phases)))}.  Give it a number in fixed={{...}}.")
 
 
 def parameters(F: FloquetMatrix) -> set[Symbol]:

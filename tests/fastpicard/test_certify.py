@@ -418,3 +418,12 @@ def test_boundaries_tubes_and_multipliers_can_be_pickled_and_copied():
         assert hash(multiplier) == hash(multiplier) and multiplier == multiplier
     chart = certify(F, (a, 0, 1), (b, 0, 1), undecided=0.1)
     assert chart == chart and chart != pickle.loads(pickle.dumps(chart)) and hash(chart) == hash(chart)
+
+
+def test_phases_need_numbers():
+    """cos(t + c): refused before an iterate is computed, which would take minutes here; with a number it is proved."""
+    system = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t + c) - cos(2 * t) / 3, 0]]), t, 0)
+
+    with pytest.raises(BadInputError, match="P has a phase with c.  Give it a number"):
+        certify(system, (a, -5, 5), (b, 0, 5))
+    assert certify(system, (a, 0.1, 0.12), (b, 0, 0.02), fixed={c: Rational(1, 3)}).undecided < 1
