@@ -30,18 +30,15 @@ from fastpicard import doubledouble
 from fastpicard.collapsed import Collapsed, Variable
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError
-from fastpicard.evaluate import (
-    EXTRA_BITS,
-    Point,
-    numpy,
-    to_number,
-)
+from fastpicard.evaluate import Point, numpy, to_number
 from fastpicard.precision import working
 
 Array = Any
 BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
 ALLOWED = 9 * UNIT  # of the largest entry; what is missing to 10 is left to the roundings of the bounds
 FLOAT, PAIR, BALL = 0, 1, 2
+PRECISIONS = (128, 256, 512, 1024, 2048, 8192)  # of balls: no more of them than have their coefficients remembered
+POLE = 2048  # what is not finite in so many bits is taken to have no value
 
 
 def values_of(variables: list[Variable], columns: dict[Symbol, Array], time: Any) -> list[doubledouble.Variable]:
@@ -124,20 +121,27 @@ class Evaluator:
                 places, sizes, here = places[rest], [w[rest] for w in sizes], [v.at(rest) for v in here]
 
     def _ball(self, at: list[float]) -> tuple[list[float], list[float]]:
-        """One point in balls: the largest entry decides when the precision is enough."""
+        """One point in balls: the largest entry decides when the precision is enough, poles do not."""
         exact = {name: fmpq(*map(int, float(x).as_integer_ratio())) for name, x in zip(self.names, at, strict=True)}
-        precision = 128
-        while True:
+        found: list[Any] = []
+        poles = False
+        for precision in PRECISIONS:
+            if poles and precision < POLE:
+                continue
             with working(precision):
                 found = self.collapsed.balls(exact)
-                if not all(x.is_finite() for x in found) or precision > EXTRA_BITS:
+                poles = not all(x.is_finite() for x in found)
+                if _settled([x for x in found if x.is_finite()]) and (not poles or precision >= POLE):
                     break
-                if max(x.rad() for x in found) <= max(x.abs_lower() for x in found) * arb(2) ** -60:
-                    break
-            precision *= 2
         with working(precision):
             pairs = list(map(_with_bound, found))
         return [value for value, _ in pairs], [bound for _, bound in pairs]
+
+
+def _settled(found: list[Any]) -> bool:
+    """Whether every ball is small beside the largest."""
+    widest, largest = (max(x, default=arb(0)) for x in ((x.rad() for x in found), (x.abs_lower() for x in found)))
+    return bool(widest <= largest * arb(2) ** -60)
 
 
 def _floats(p: Polynomial, variables: list[doubledouble.Variable], weighted: Array) -> tuple[Array, Array]:

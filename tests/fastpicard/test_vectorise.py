@@ -152,6 +152,34 @@ def test_balls_go_on_until_the_bound_is_there():
     assert value == pytest.approx(2**0.5 * 2.0**-90, rel=1e-15) and bound <= np.spacing(value)
 
 
+@pytest.mark.parametrize("value", [150.0, -60.0])
+def test_a_pole_in_one_entry_costs_the_others_no_digit(value):
+    """Beside 1/c at c = 0 Mathieu's entries at a = 150 cancel by 1e34, and are what they are without it."""
+    P = sympy.diag(MATHIEU, sympy.Matrix([[1 / c]]))
+
+    found, bounds = FloquetMatrix(P, t, 60).lambdify([a, b, c], bound=True)(value, 1.0, 0.0)
+    truths = list(map(fraction, FloquetMatrix(MATHIEU, t, 60).evaluate({a: value, b: 1}, 40)))
+    slack = float(max(map(abs, truths))) * 1e-38
+    assert is_kept(found[:2, :2].ravel(), bounds[:2, :2].ravel() + slack, truths)
+    assert np.isnan(found[2, 2]) and bounds[2, 2] == np.inf
+
+
+@pytest.mark.parametrize(("expression", "at", "value"), [
+    (a**2 / (1 - cos(a)), (1e-25, 0, 0), 2),
+    (1 / (a**2 + b**2 - c**2), (1e20, 1e-10, 1e20), 1 / Fraction(1e-10) ** 2),
+    (exp(a), (1e100, 0, 0), np.inf),
+    (-exp(a), (1e100, 0, 0), -np.inf),
+    (exp(-a), (1e100, 0, 0), 0),
+    (1 / (a - b), (1.0, 1.0, 0), np.nan),
+], ids=str)
+def test_only_a_pole_is_nan(expression, at, value):
+    """Where 128 bits see a division by 0 more bits see a number, or one beyond the doubles; at a pole no bits do."""
+    found, bound = vectorise(collapsed(expression), [a, b, c], (), bound=True)(*at)
+
+    assert found == pytest.approx(float(value), rel=1e-15, nan_ok=True)
+    assert np.isinf(bound) if not np.isfinite(found) else bound <= 10 * np.spacing(found)
+
+
 def test_coefficients_are_kept_for_the_precisions_last_used():
     """After many precisions a point in balls finds its coefficients again, and few are held."""
     constants = collapsed(sympy.expand(sqrt(2) * (a - b) ** 3))
