@@ -2,9 +2,9 @@ r"""Exact constants as numbers, for one point or a million, no digit of which mi
 
 The constants are polynomials in few variables (:mod:`fastpicard.collapsed`), collapsed before anything is rounded.
 
-**Which arithmetic.**  Let v be the exact entries at a point (one, for a trace), and
+**Which arithmetic.**  Let v be the exact entries at a point (one, for a trace) that doubles can hold, and
 ``u = 2**-53``; every output shall be right to ``10 u max |v|``, which is at most 10 ulp of
-the largest entry.  For each point the cheapest way that is *proved* to do it is
+the largest of them; what is beyond them shall be the infinity of its sign.  For each point the cheapest way that is *proved* to do it is
 taken, by the bounds of :mod:`fastpicard.doubledouble`:
 
 1. float64, if ``u W <= 9 u f`` for all entries,
@@ -38,6 +38,7 @@ BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
 ALLOWED = 9 * UNIT  # of the largest entry; what is missing to 10 is left to the roundings of the bounds
 FLOAT, PAIR, BALL = 0, 1, 2
 PRECISIONS = (128, 256, 512, 1024, 2048, 8192)  # of balls: no more of them than have their coefficients remembered
+BEYOND = arb(2) ** 1024  # an infinite float
 POLE = 2048  # what is not finite in so many bits is taken to have no value
 
 
@@ -121,7 +122,7 @@ class Evaluator:
                 places, sizes, here = places[rest], [w[rest] for w in sizes], [v.at(rest) for v in here]
 
     def _ball(self, at: list[float]) -> tuple[list[float], list[float]]:
-        """One point in balls: the largest entry decides when the precision is enough, poles do not."""
+        """One point in balls: the largest entry that is a double decides when the precision is enough, poles do not."""
         exact = {name: fmpq(*map(int, float(x).as_integer_ratio())) for name, x in zip(self.names, at, strict=True)}
         found: list[Any] = []
         poles = False
@@ -139,7 +140,8 @@ class Evaluator:
 
 
 def _settled(found: list[Any]) -> bool:
-    """Whether every ball is small beside the largest."""
+    """Whether what doubles can hold is right to ``2**-60`` of the largest such entry; what is beyond has a sign then."""
+    found = [x for x in found if not x.abs_lower() > BEYOND]
     widest, largest = (max(x, default=arb(0)) for x in ((x.rad() for x in found), (x.abs_lower() for x in found)))
     return bool(widest <= largest * arb(2) ** -60)
 
@@ -160,7 +162,7 @@ def _with_bound(x: Any) -> tuple[float, float]:
         return math.nan, math.inf
     value = to_number(x, None)
     if not math.isfinite(value):
-        return value, math.inf
+        return math.nan if x.contains(0) else value, math.inf
     if x == value:
         return value, 0.0
     return value, math.nextafter(to_number((x - arb(value)).abs_upper(), None), math.inf)
