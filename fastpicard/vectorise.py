@@ -69,11 +69,12 @@ class Evaluator:
     Parameters
     ----------
     collapsed : the constants
-    names : the parameters in the order of the arrays
+    names : the parameters in the order of the arrays; those that do not occur make no difference
     """
 
     def __init__(self, collapsed: Collapsed, names: tuple[Symbol, ...]) -> None:
-        self.collapsed, self.names = collapsed, names
+        self.collapsed, self.names = collapsed, [name for name in names if name in collapsed.symbols]
+        self.places = [i for i, name in enumerate(names) if name in collapsed.symbols]
         self.scales, rows = collapsed.rounded
         pairs = [v.parameter[1] != 1 for v in collapsed.variables]
         self.polynomials = [Polynomial(steps, row, [sum(m) for m in ms], pairs) for steps, row, ms in
@@ -83,24 +84,25 @@ class Evaluator:
     def __call__(self, columns: list[Array]) -> tuple[Array, Array, Array]:
         """Values and bounds, shape (constants, points), and the arithmetic of every point, shape (points,)."""
         np, size = numpy(), len(columns[0]) if columns else 1
+        columns = [columns[i] for i in self.places]
         values, bounds = np.full((len(self.polynomials), size), np.nan), np.full((len(self.polynomials), size), np.inf)
         route = np.full(size, BALL, dtype=np.int8)
-        finite = np.logical_and.reduce([np.isfinite(x) for x in columns]) if columns else np.ones(1, dtype=bool)
+        finite = np.logical_and.reduce([np.ones(size, dtype=bool), *map(np.isfinite, columns)])
         if self.limit >= 0:
             with np.errstate(all="ignore"):
                 for start in range(0, size, BLOCK):
                     block = slice(start, start + BLOCK)
-                    self._block([x[block] for x in columns], values[:, block], bounds[:, block], route[block])
+                    self._block([x[block] for x in columns], finite[block], values[:, block], bounds[:, block], route[block])
         for i in np.flatnonzero((route == BALL) & finite):
             values[:, i], bounds[:, i] = self._ball([x[i] for x in columns])
         return values, bounds, route
 
-    def _block(self, columns: list[Array], values: Array, bounds: Array, route: Array) -> None:
-        """Fill in what float64 and pairs can do for one block."""
+    def _block(self, columns: list[Array], finite: Array, values: Array, bounds: Array, route: Array) -> None:
+        """Fill in what float64 and pairs can do for one block, at the finite points."""
         np, given = numpy(), dict(zip(self.names, columns, strict=True))
         values_here = values_of(self.collapsed.variables, given, self.collapsed.time)
         variables = [v.scaled(s) for v, s in zip(values_here, self.scales, strict=True)]
-        inside = np.ones(len(route), dtype=bool)
+        inside = finite.copy()
         for variable in variables:
             inside &= variable.inside(self.limit)
         places = np.flatnonzero(inside)
@@ -231,7 +233,7 @@ def _array(value: Any) -> Array:
     np = numpy()
     if isinstance(value, np.ma.MaskedArray):
         raise BadTypeError(f"the arguments must be arrays without a mask, but one is {value!r}.  "
-                           "Use its filled(nan): the results there are nan.")
+                           "Use its filled(nan): wherever the parameter occurs, the results there are nan.")
     try:
         array = np.asarray(value)
         real = array.dtype.kind in "iuf" or array.dtype.kind == "O" and all(map(_is_real, array.flat))

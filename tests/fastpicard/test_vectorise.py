@@ -244,6 +244,29 @@ def test_where_there_is_no_value_there_is_nan_and_no_bound():
     assert np.isinf(bound[[0, 3]]).all()
 
 
+@pytest.mark.parametrize("endless", [np.inf, -np.inf, np.nan])
+@pytest.mark.parametrize("expression", [2 - 1 / a, 2 - b / a, exp(-a) + b, 1 / a**2 + 1, b / sqrt(a), cos(a)], ids=str)
+def test_an_infinite_parameter_gives_nan_where_it_occurs_though_its_reciprocal_is_zero(expression, endless):
+    """No limit is taken; beside it, and at a number that balls take over, the values are what they are."""
+    f = vectorise(collapsed(expression), [a, b], (), bound=True)
+    value, bound = f([endless, 2.0, endless], [1.0, 1.0, 1e-320])
+
+    assert np.isnan(value).tolist() == [True, False, True] and np.isinf(bound).tolist() == [True, False, True]
+    assert (value[1], bound[1]) == f(2.0, 1.0)
+
+
+@pytest.mark.parametrize("size", [1.0, 1e300], ids=["floats", "balls"])
+@pytest.mark.parametrize("idle", [np.nan, np.inf, 1.0])
+def test_a_parameter_that_does_not_occur_makes_no_difference(idle, size):
+    """Whatever it is, in whichever arithmetic; where none occurs the constant is everywhere."""
+    expected = vectorise(collapsed(b**2 / 3, 1), [b], (2,), bound=True)(size)
+    found = vectorise(collapsed(b**2 / 3, 1), [a, b], (2,), bound=True)([idle, 2.0], size)
+
+    assert np.array_equal(found, np.stack([expected, expected], axis=1))
+    for constant in (1 / 3, Rational(10) ** 400):
+        assert len(set(vectorise(collapsed(constant), [a], ())([idle, 2.0]))) == 1
+
+
 def test_numbers_beyond_the_doubles_are_infinite_with_an_infinite_bound():
     """a**2 at 1e200, both signs; the denormal end has its bound."""
     value, bound = vectorise(collapsed(-(a**2)), [a], (), bound=True)([1e200, 1e-200, 1e-160, -1e150])
