@@ -137,9 +137,14 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
     for s, value in exact.items():
         fraction = value.q != 1 if isinstance(value, fmpq) else isinstance(value, Expr) and not value.is_integer
         if s.is_integer and fraction:
-            raise BadInputError(f"{s} is an integer by its assumptions, which SymPy has made use of, but its value is "
-                                f"{value}.  Give an integer, or use a Symbol without that assumption.")
+            raise no_integer(s, value)
     return {s: exact[s] for s in needed}
+
+
+def no_integer(s: Symbol, value: Any) -> BadInputError:
+    """The refusal of a value that the assumptions of a Symbol exclude."""
+    return BadInputError(f"{s} is an integer by its assumptions, which SymPy has made use of, but its value is "
+                         f"{value}.  Give an integer, or use a Symbol without that assumption.")
 
 
 def ball(value: Any) -> Any:

@@ -30,7 +30,7 @@ from fastpicard import doubledouble
 from fastpicard.collapsed import Collapsed, Variable
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError
-from fastpicard.evaluate import Point, numpy, to_number
+from fastpicard.evaluate import Point, no_integer, numpy, to_number
 from fastpicard.precision import working
 
 Array = Any
@@ -206,6 +206,8 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
     ------
     MissingParameterError
         if a parameter that occurs is not among ``params``.
+    BadInputError
+        by the function, for a number beyond the doubles, or where a Symbol that is an integer is given another number.
     """
     names = _checked(params, collapsed.t)
     missing = sorted(collapsed.symbols - set(names), key=str)
@@ -219,7 +221,7 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
         if len(values) != len(names):
             raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were "
                                "given.  Give one number or array for each.")
-        arrays = _broadcast([_array(value) for value in values])
+        arrays = _broadcast([_integers(name, _array(value)) for name, value in zip(names, values, strict=True)])
         outer = arrays[0].shape if arrays else ()
         found, errors, _ = evaluator([array.reshape(-1) for array in arrays])
         results = [x.T.reshape(outer + shape)[()] for x in ((found, errors) if bound else (found,))]
@@ -246,6 +248,15 @@ def _array(value: Any) -> Array:
         pass
     raise BadTypeError(f"the arguments must be real numbers or arrays of them, but one is {value!r}.  "
                        "Text and expressions are not evaluated; nor are complex numbers, truth values and dates.")
+
+
+def _integers(name: Symbol, array: Array) -> Array:
+    """The same numbers, where the assumptions of the Symbol allow them."""
+    np = numpy()
+    if name.is_integer:
+        for value in array[np.isfinite(array) & (array != np.floor(array))][:1]:
+            raise no_integer(name, value)
+    return array
 
 
 def _is_real(x: Any) -> bool:

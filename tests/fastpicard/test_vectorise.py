@@ -10,7 +10,7 @@ from flint import ctx
 from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Mul, Rational, cos, exp, pi, sin, sqrt
 
-from fastpicard import FloquetMatrix, FundamentalMatrix, MissingParameterError, PoissonSeries, fast_picard
+from fastpicard import BadInputError, FloquetMatrix, FundamentalMatrix, MissingParameterError, PoissonSeries, fast_picard
 from fastpicard.collapsed import Collapsed
 from fastpicard.vectorise import BALL, BLOCK, FLOAT, PAIR, Evaluator, vectorise
 from tests.strategies import a, b, c, phi, t, w
@@ -230,6 +230,21 @@ def test_integers_and_fractions_are_the_doubles_they_round_to():
     f = vectorise(collapsed(a), [a], ())
 
     assert f(Fraction(1, 3)) == 1 / 3 and f(2**53 + 1) == 2.0**53 and f(np.float32(0.1)) == np.float32(0.1)
+
+
+def test_a_symbol_that_is_an_integer_takes_no_other_number():
+    """SymPy has made use of sin(pi n) = 0; the first such number is named, in the words of evaluate."""
+    n = sympy.Symbol("n", integer=True)
+    F = FloquetMatrix(Matrix([[0, 1], [-a - cos(n * t), 0]]), t, 4)
+    f = F.lambdify_trace([a, n])
+    with pytest.raises(BadInputError, match=r"n is an integer by its assumptions.* its value is 1/2\.") as expected:
+        F.trace_at({a: 1, n: 0.5})
+
+    for values in (0.5, [[2, 0.5], [np.nan, 1.5]], Fraction(1, 2)):
+        with pytest.raises(BadInputError) as found:
+            f(1, values)
+        assert str(found.value) == str(expected.value).replace("1/2", "0.5")
+    assert f(0.25, [2, np.inf]) == pytest.approx([F.trace_at({a: 0.25, n: 2}), np.nan], nan_ok=True)
 
 
 def test_where_there_is_no_value_there_is_nan_and_no_bound():
