@@ -2,10 +2,11 @@ r"""Exact constants as numbers, for one point or a million, no digit of which mi
 
 The constants are polynomials in few variables (:mod:`fastpicard.collapsed`), collapsed before anything is rounded.
 
-**Which arithmetic.**  Let v be the exact entries at a point (one, for a trace) that doubles can hold, and
-``u = 2**-53``; every output shall be right to ``10 u max |v|``, which is at most 10 ulp of
-the largest of them; what is beyond them shall be the infinity of its sign.  For each point the cheapest way that is *proved* to do it is
-taken, by the bounds of :mod:`fastpicard.doubledouble`:
+**Which arithmetic.**  Let v be the exact entries at a point (one, for a trace) that doubles can
+hold, and ``u = 2**-53``; every one of them shall be right to ``10 u max |v|``, which is at most
+10 ulp of the largest, and what is beyond doubles shall be the infinity of its sign.  For each
+point the cheapest way that is *proved* to do it is taken, by the bounds of
+:mod:`fastpicard.doubledouble`:
 
 1. float64, if ``u W <= 9 u f`` for all entries,
 2. pairs of float64, if ``u |r + e| + u*u K W <= 9 u f``,
@@ -92,7 +93,8 @@ class Evaluator:
             with np.errstate(all="ignore"):
                 for start in range(0, size, BLOCK):
                     block = slice(start, start + BLOCK)
-                    self._block([x[block] for x in columns], finite[block], values[:, block], bounds[:, block], route[block])
+                    self._block([x[block] for x in columns], finite[block],
+                                values[:, block], bounds[:, block], route[block])
         for i in np.flatnonzero((route == BALL) & finite):
             values[:, i], bounds[:, i] = self._ball([x[i] for x in columns])
         return values, bounds, route
@@ -142,7 +144,7 @@ class Evaluator:
 
 
 def _settled(found: list[Any]) -> bool:
-    """Whether what doubles can hold is right to ``2**-60`` of the largest such entry; what is beyond has a sign then."""
+    """Whether what doubles can hold is right to ``2**-60`` of the largest such entry; what is beyond has its sign."""
     found = [x for x in found if not x.abs_lower() > BEYOND]
     widest, largest = (max(x, default=arb(0)) for x in ((x.rad() for x in found), (x.abs_lower() for x in found)))
     return bool(widest <= largest * arb(2) ** -60)
@@ -240,7 +242,7 @@ def _array(value: Any) -> Array:
         array = np.asarray(value)
         real = array.dtype.kind in "iuf" or array.dtype.kind == "O" and all(map(_is_real, array.flat))
         if real:
-            return array.astype(float)
+            return _doubles(array)
     except OverflowError:
         raise BadInputError("the arguments must be in the range of doubles, up to 1.8e308, but one is beyond.  "
                             "Use evaluate, which takes numbers of any size.") from None
@@ -248,6 +250,17 @@ def _array(value: Any) -> Array:
         pass
     raise BadTypeError(f"the arguments must be real numbers or arrays of them, but one is {value!r}.  "
                        "Text and expressions are not evaluated; nor are complex numbers, truth values and dates.")
+
+
+def _doubles(array: Array) -> Array:
+    """Infinities only where there were infinities: not every kind of number raises OverflowError of its own."""
+    np = numpy()
+    with np.errstate(over="ignore"):
+        doubles = array.astype(float)
+    infinite = np.isinf(doubles)
+    if infinite.any() and np.any(array[infinite] != doubles[infinite]):
+        raise OverflowError
+    return doubles
 
 
 def _integers(name: Symbol, array: Array) -> Array:

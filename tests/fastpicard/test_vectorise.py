@@ -3,6 +3,7 @@
 from fractions import Fraction
 from functools import cache
 
+import mpmath
 import numpy as np
 import pytest
 import sympy
@@ -10,7 +11,14 @@ from flint import ctx
 from hypothesis import given, settings, strategies as st
 from sympy import Matrix, Mul, Rational, cos, exp, pi, sin, sqrt
 
-from fastpicard import BadInputError, FloquetMatrix, FundamentalMatrix, MissingParameterError, PoissonSeries, fast_picard
+from fastpicard import (
+    BadInputError,
+    FloquetMatrix,
+    FundamentalMatrix,
+    MissingParameterError,
+    PoissonSeries,
+    fast_picard,
+)
 from fastpicard.collapsed import Collapsed
 from fastpicard.vectorise import BALL, BLOCK, FLOAT, PAIR, Evaluator, vectorise
 from tests.strategies import a, b, c, phi, t, w
@@ -245,6 +253,30 @@ def test_a_symbol_that_is_an_integer_takes_no_other_number():
             f(1, values)
         assert str(found.value) == str(expected.value).replace("1/2", "0.5")
     assert f(0.25, [2, np.inf]) == pytest.approx([F.trace_at({a: 0.25, n: 2}), np.nan], nan_ok=True)
+
+
+@pytest.mark.parametrize("value", [
+    10**400, Fraction(10**400), Fraction(-(10**400), 7), sympy.Integer(10) ** 400, Rational(10**400, 7),
+    sympy.Float("-1e400"), mpmath.mpf("1e400"), np.longdouble("1e400"),
+], ids=lambda x: f"{type(x).__module__}.{type(x).__name__}")
+def test_numbers_beyond_the_doubles_are_refused_whatever_their_kind(value):
+    """Alone and among others; evaluate takes them.  None is taken for infinite."""
+    f = vectorise(collapsed(1 / a), [a], ())
+
+    for argument in (value, [1.0, value], np.array([[value]])):
+        with pytest.raises(BadInputError, match="range of doubles"):
+            f(argument)
+
+
+@pytest.mark.parametrize("value", [
+    np.inf, -np.inf, np.nan, sympy.oo, -sympy.oo, sympy.nan, mpmath.inf, mpmath.nan, np.longdouble("-inf"),
+    np.float32("inf"),
+], ids=lambda x: f"{type(x).__name__} {x}")
+def test_infinities_and_nan_are_arguments_of_every_kind(value):
+    """They were no number before; the others keep their values."""
+    f = vectorise(collapsed(1 / a), [a], ())
+
+    assert np.isnan(f(value)) and f([value, 2])[1] == 0.5
 
 
 def test_where_there_is_no_value_there_is_nan_and_no_bound():
