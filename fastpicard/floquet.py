@@ -60,7 +60,7 @@ class FloquetMatrix:
     period : positive number or expression free of ``t``, default ``2*pi``
         a period of ``P``, not necessarily the least; exact, so no float.
         For constant ``P`` any positive time.  Values of parameters that make it 0 or negative are refused, but
-        by the exact polynomial, :meth:`evaluate` and :meth:`trace_at`.
+        by the exact polynomial, :meth:`evaluate`, :meth:`trace_at`, :meth:`lambdify` and :meth:`lambdify_trace`.
 
     Attributes
     ----------
@@ -424,10 +424,10 @@ class FloquetMatrix:
     def lambdify(self, params: Sequence[Symbol], bound: bool = False) -> Callable[..., Any]:
         """A NumPy function of the parameters in this order; arrays broadcast to shape (..., m, m).
 
-        Every entry is right to 10 ulp of the largest entry of the n-th iterate at its point.  The cheapest
-        arithmetic that is proved to do it is taken point by point: float64, pairs of float64, balls.  Arguments are
-        the doubles they round to.  Where the value is beyond the largest double it is infinite, where there is none,
-        at a pole, it is nan.
+        Every entry is right to 10 ulp of the largest entry of the n-th iterate at its point that a double can hold.
+        The cheapest arithmetic that is proved to do it is taken point by point: float64, pairs of float64, balls.
+        Arguments are the doubles they round to.  Where the value is beyond the largest double it is infinite; where
+        there is none it is nan: at a pole, and where a parameter that occurs is nan or infinite.
 
         Parameters
         ----------
@@ -439,6 +439,9 @@ class FloquetMatrix:
         ------
         MissingParameterError
             if a parameter is not among ``params``.
+        BadInputError
+            by the function, for a number beyond the doubles, or where a Symbol that is an integer by its assumptions is
+            given another number.
 
         Notes
         -----
