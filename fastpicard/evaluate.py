@@ -304,14 +304,16 @@ def count_of_digits(digits: Any, kind: str = "a positive integer", least: str = 
 def refine(compute: Callable[[], list[Any]], digits: int | None) -> list[Any]:
     """Balls as accurate as asked for: the precision grows until every relative radius is small enough.
 
-    A value that ``EXTRA_BITS`` bits more cannot tell from zero is returned as an exact zero.
+    For float64, ``digits=None``, it also grows until a ball rounds to one float, unless ``EXTRA_BITS`` bits more do not
+    tell on which side of the middle of two floats the value lies.  A value that they cannot tell from zero is returned
+    as an exact zero.
     """
     needed = 56 if digits is None else libmp.dps_to_prec(digits) + 4
     precision = needed + 64
     while True:
         with working(precision):
             result = compute()
-            if all(_accurate(x, needed) for x in result):
+            if all(_accurate(x, needed) and (digits is not None or _is_one_float(x)) for x in result):
                 return result
         if precision > needed + EXTRA_BITS:
             return [_settle(x, needed) for x in result]
@@ -320,6 +322,10 @@ def refine(compute: Callable[[], list[Any]], digits: int | None) -> list[Any]:
 
 def _accurate(x: Any, needed: int) -> bool:
     return bool(x == 0) or bool(x.is_finite() and x.rel_accuracy_bits() >= needed)
+
+
+def _is_one_float(x: Any) -> bool:
+    return bool(x.is_exact()) or _to_float(x.lower()) == _to_float(x.upper())
 
 
 def _settle(x: Any, needed: int) -> Any:
@@ -333,10 +339,24 @@ def _settle(x: Any, needed: int) -> Any:
 
 def to_number(x: Any, digits: int | None) -> Any:
     """The midpoint of a ball as float, or as mpf with the digits asked for."""
-    mantissa, exponent = x.mid().man_exp()
     if digits is None:
-        return libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "n"))
+        return _to_float(x)
+    mantissa, exponent = x.mid().man_exp()
     return mpmath.mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent), libmp.dps_to_prec(digits), "n"))
+
+
+def _to_float(x: Any) -> float:
+    """The float nearest to the midpoint, rounded once from normal to denormal: Python's quotient of integers is."""
+    mantissa, exponent = map(int, x.mid().man_exp())
+    top = mantissa.bit_length() + exponent  # |x| < 2**top <= 2 |x|
+    if top < -1074:
+        return -0.0 if mantissa < 0 else 0.0
+    try:
+        if top <= 1024:
+            return float(mantissa << exponent) if exponent >= 0 else mantissa / (1 << -exponent)
+    except OverflowError:  # nearer to 2**1024 than to the largest float
+        pass
+    return -math.inf if mantissa < 0 else math.inf
 
 
 def to_complex(z: Any, digits: int | None) -> Any:
@@ -345,16 +365,13 @@ def to_complex(z: Any, digits: int | None) -> Any:
     return complex(real, imag) if digits is None else mpmath.mp.make_mpc((real._mpf_, imag._mpf_))
 
 
-LEAST = 5e-324  # the least positive float
-
-
 def upper_float(x: Any) -> float:
     """The least float that is not below an exact ball; ``inf`` beyond all floats."""
     if not x.is_finite():
         return math.inf
-    mantissa, exponent = x.upper().man_exp()
-    found = float(libmp.to_float(libmp.from_man_exp(int(mantissa), int(exponent), 53, "c"), rnd="c"))
-    return found if found or mantissa <= 0 else LEAST
+    top = x.upper()
+    found = _to_float(top)
+    return found if arb(found) >= top else math.nextafter(found, math.inf)
 
 
 def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, digits: int | None) -> list[Any]:

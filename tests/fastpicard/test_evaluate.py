@@ -8,9 +8,10 @@ import pytest
 import sympy
 from flint import arb, ctx
 from hypothesis import given, strategies as st
-from sympy import Rational, Symbol, cos, exp, pi, sin, sqrt
+from sympy import Matrix, Rational, Symbol, cos, exp, pi, sin, sqrt
 
-from fastpicard import BadInputError, BadTypeError, FundamentalMatrix, PoissonSeries
+from fastpicard import BadInputError, BadTypeError, FundamentalMatrix, PoissonSeries, fast_picard
+from fastpicard.evaluate import upper_float
 from tests.oracles import closeness
 from tests.strategies import a, b, phi, t, w
 
@@ -202,3 +203,59 @@ def test_what_binds_a_symbol_is_refused_by_its_own_name(constant):
     """The bound b is no parameter, and has no value."""
     with pytest.raises(BadInputError, match=f"{type(constant).__name__} has no ball arithmetic here"):
         PoissonSeries(constant * t, t).evaluate(1, {a: 2})
+
+
+midpoints = st.builds(lambda n, least: n + least + Fraction(1, 2), st.integers(0, 2**52), st.sampled_from([0, 2**52]))
+ends = st.sampled_from([-1074, -1073, 0, 970, 971])
+halves = st.builds(lambda sign, middle, e, rest, bits: sign * (middle + Fraction(rest, 2**bits)) * Fraction(2) ** e,
+                   st.sampled_from([1, -1]), midpoints, ends | st.integers(-1074, 971), st.integers(-3, 3),
+                   st.integers(1, 300))  # fmt: skip
+
+
+def nearest(x):
+    """The float nearest to a fraction, by Python; infinite beyond the largest."""
+    try:
+        return float(x)
+    except OverflowError:
+        return np.inf if x > 0 else -np.inf
+
+
+@given(halves)
+def test_floats_are_the_nearest_ones_however_near_the_middle_of_two(x):
+    """Near ties, normal, denormal and at the end of the range: 1 + (x - 1), whose digits are not all in 120 bits."""
+    assert fast_picard(Matrix([[0]]), t, [a], 0).evaluate(0, {a: x})[0, 0] == nearest(x)
+    assert FundamentalMatrix(Matrix([[a]]), t, 1).evaluate(1, {a: x - 1})[0, 0] == nearest(x)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("x", "value"), [
+    (1 + Fraction(1, 2**53) + Fraction(1, 2**130), 1 + 2.0**-52),
+    (1 + Fraction(1, 2**53) + Fraction(1, 2**3000), 1 + 2.0**-52),
+    (1 + Fraction(1, 2**53) - Fraction(1, 2**3000), 1.0),
+    (Fraction(5, 2) / 2**1074 * (1 + Fraction(1, 2**60)), 15e-324),
+    (Fraction(1, 2**1075), 0.0),
+    (Fraction(1, 2**1075) * (1 + Fraction(1, 2**200)), 5e-324),
+    (Fraction(2**1024 - 2**970), np.inf),
+    (Fraction(2**1024 - 2**970) - Fraction(1, 3), 2.0**1023 * (2 - 2.0**-52)),
+], ids=["above a tie", "just above", "just below", "denormal", "tie with 0", "above it", "overflow", "no overflow"])
+def test_values_beside_the_middle_of_two_floats_are_on_their_side(x, value, sign):
+    """As long as 4096 bits tell; denormals are not rounded to 53 bits first."""
+    assert fast_picard(Matrix([[0]]), t, [a], 0).evaluate(0, {a: sign * x})[0, 0] == sign * value
+    assert FundamentalMatrix(Matrix([[a]]), t, 1).evaluate(1, {a: sign * x - 1})[0, 0] == sign * value
+
+
+def test_a_value_in_the_middle_of_two_floats_that_no_precision_shows_is_one_of_them():
+    """sqrt(2)**2 (1 + 2**-53)/2 as a product of balls: the search ends, and both floats are as near."""
+    halfway = Rational(2**53 + 1, 2**53)
+
+    assert PoissonSeries(a * b * t, t).evaluate(1, {a: sqrt(2) * halfway, b: sqrt(2) / 2}) in (1.0, 1 + 2.0**-52)
+
+
+@given(halves)
+def test_upper_floats_are_the_least_above(x):
+    """Denormals too; beyond all floats it is infinite, and below all of them the least."""
+    with ctx.workprec(3000):
+        found = upper_float(arb(x.numerator) / x.denominator)
+    assert found == np.inf or Fraction(found) >= x
+    below = np.nextafter(found, -np.inf)
+    assert np.isinf(below) or Fraction(float(below)) < x
