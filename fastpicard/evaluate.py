@@ -30,6 +30,7 @@ from sympy import Expr, Symbol
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.modes import COS, Key, Linear, Modes
 from fastpicard.precision import working
+from fastpicard.reading import exact_constant
 from fastpicard.ring import Monomial, Polynomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
@@ -46,13 +47,6 @@ def numpy() -> Any:
 
 # -- numbers in --------------------------------------------------------------
 
-_NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
-    (mpmath.pi, sympy.pi), (mpmath.e, sympy.E), (mpmath.euler, sympy.EulerGamma), (mpmath.catalan, sympy.Catalan),
-    (mpmath.phi, sympy.GoldenRatio), (mpmath.degree, sympy.pi / 180), (mpmath.ln2, sympy.log(2)),
-    (mpmath.ln10, sympy.log(10)),
-)
-
-
 def exact_number(value: Any, what: str) -> Any:
     """A number as ``fmpq``, ``arb`` or real SymPy constant: the exact number the argument is.
 
@@ -65,21 +59,19 @@ def exact_number(value: Any, what: str) -> Any:
     BadInputError
         for nan and infinities.
     """
-    for constant, exact in _NAMED:
-        if value is constant:
-            return exact
+    if isinstance(value, mpmath.mp.constant):
+        return exact_constant(value, what)
     if isinstance(value, arb):
         return _finite(value, value.is_finite(), what)
     if isinstance(value, fmpq | fmpz):
         return fmpq(value)
     if isinstance(value, Expr):
         return _sympy_number(value, what)
-    if isinstance(value, mpmath.mpf) and not isinstance(value, mpmath.mp.constant):
+    if isinstance(value, mpmath.mpf):
         return rational(sympy.Float(_finite(value, mpmath.isfinite(value), what), precision=max(value._mpf_[3], 53)))
     if isinstance(value, Decimal):
         return fmpq(*map(int, _finite(value, value.is_finite(), what).as_integer_ratio()))
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(
-            value, mpmath.mp.constant | type(mpmath.iv.one)):
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(value, type(mpmath.iv.one)):
         raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  "
                            "Give an int, Fraction, SymPy number, mpf, float or arb; text is never evaluated.")
     if isinstance(value, numbers.Rational):  # of any size, floats are not

@@ -14,6 +14,7 @@ from decimal import Decimal
 from functools import lru_cache
 from typing import Any
 
+import mpmath
 import sympy
 from flint import fmpq, fmpq_poly
 from sympy import Basic, Expr, I, Symbol, cos, exp, pi, sin
@@ -46,20 +47,44 @@ _FAMILY = "is not in the family of sums of t**r cos(q t + phi) and t**r sin(q t 
 
 # -- what may come in --------------------------------------------------------
 
+_NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
+    (mpmath.pi, sympy.pi), (mpmath.e, sympy.E), (mpmath.euler, sympy.EulerGamma), (mpmath.catalan, sympy.Catalan),
+    (mpmath.phi, sympy.GoldenRatio), (mpmath.degree, sympy.pi / 180), (mpmath.ln2, sympy.log(2)),
+    (mpmath.ln10, sympy.log(10)),
+)
 
-def as_expression(value: Any, what: str = "the expression") -> Expr:
-    """A SymPy expression from a SymPy expression or a Python number; text is refused unread.
+
+def exact_constant(value: Any, what: str) -> Expr:
+    """A constant of mpmath as the number it names, not as its rounding at the precision of the day.
 
     Raises
     ------
     BadTypeError
-        for ``str`` (SymPy would evaluate it as code) and for anything that is no scalar.
+        for those that SymPy has no name for.
+    """
+    for constant, exact in _NAMED:
+        if value is constant:
+            return exact
+    raise BadTypeError(f"{what} must be a number that is known exactly, but it is {value!r}, a constant of mpmath that "
+                       "has no exact form here.  Give its digits, as an mpf or a SymPy Float.")
+
+
+def as_expression(value: Any, what: str = "the expression") -> Expr:
+    """A SymPy expression from a SymPy expression or a Python number; text is refused unread, ``mpmath.pi`` is pi.
+
+    Raises
+    ------
+    BadTypeError
+        for ``str`` (SymPy would evaluate it as code), for anything that is no scalar, and for a constant of mpmath
+        that SymPy has no name for.
     """
     if isinstance(value, str):
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is the text {value!r}, "
                            "which is never evaluated as mathematics.  Build it from sympy.Symbol objects.")
     if isinstance(value, Expr) and not isinstance(value, sympy.Lambda):
         return value
+    if isinstance(value, mpmath.mp.constant):
+        return exact_constant(value, what)
     scalar = isinstance(value, numbers.Number) or hasattr(value, "_sympy_")
     if isinstance(value, bool | sympy.Lambda) or not scalar:
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is {value!r}, "

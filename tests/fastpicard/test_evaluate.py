@@ -10,7 +10,7 @@ from flint import arb, ctx
 from hypothesis import given, strategies as st
 from sympy import Matrix, Rational, Symbol, cos, exp, pi, sin, sqrt
 
-from fastpicard import BadInputError, BadTypeError, FundamentalMatrix, PoissonSeries, fast_picard
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, FundamentalMatrix, PoissonSeries, fast_picard
 from fastpicard.evaluate import upper_float
 from tests.oracles import closeness
 from tests.strategies import a, b, phi, t, w
@@ -154,10 +154,13 @@ def test_known_constants_have_every_digit(constant):
         assert abs(found - mpmath.mpf(constant.evalf(80)._mpf_)) < mpmath.mpf(10) ** -59
 
 
-@pytest.mark.parametrize(("constant", "exact"), [
+CONSTANTS = pytest.mark.parametrize(("constant", "exact"), [
     (mpmath.pi, pi), (mpmath.e, sympy.E), (mpmath.euler, sympy.EulerGamma), (mpmath.catalan, sympy.Catalan),
     (mpmath.phi, sympy.GoldenRatio), (mpmath.degree, pi / 180), (mpmath.ln2, sympy.log(2)),
     (mpmath.ln10, sympy.log(10))], ids=str)
+
+
+@CONSTANTS
 def test_constants_of_mpmath_are_those_numbers_at_any_precision(constant, exact):
     """Not their roundings at the precision that mpmath happens to have."""
     found = PoissonSeries(a * cos(t), t).evaluate(0, {a: constant}, digits=60)
@@ -166,10 +169,28 @@ def test_constants_of_mpmath_are_those_numbers_at_any_precision(constant, exact)
         assert abs(found - mpmath.mpf(exact.evalf(80)._mpf_)) < mpmath.mpf(10) ** -59
 
 
+@CONSTANTS
+def test_constants_of_mpmath_are_read_as_those_numbers(constant, exact):
+    """As times, origins, initial values, entries, periods, factors and operands: equal to SymPy's, not near."""
+    P, Q = [[a * cos(t), constant], [1, 0]], [[a * cos(t), exact], [1, 0]]
+    found, expected = fast_picard(P, t, [1, constant], 3, constant), fast_picard(Q, t, [1, exact], 3, exact)
+
+    assert found.as_matrix() == expected.as_matrix()
+    assert found(constant) == expected(exact) == expected(constant) and found.P(constant) == expected.P(exact)
+    traces = [FloquetMatrix([[0, 1], [-a, 0]], t, 3, period).trace() for period in (constant, exact)]
+    assert traces[0] == traces[1]
+    f = PoissonSeries(cos(t), t)
+    assert (f * constant + constant, f / constant, f.scale(constant)) == (f * exact + exact, f / exact, f.scale(exact))
+
+
 def test_constants_of_mpmath_without_a_name_here_are_refused():
-    """As before: a rounding would have no digits beyond its own."""
-    with pytest.raises(BadTypeError, match="Apery"):
-        PoissonSeries(a * cos(t), t).evaluate(0, {a: mpmath.apery})
+    """A rounding would have no digits beyond its own; as a value, a time and an entry."""
+    f = PoissonSeries(a * cos(t), t)
+
+    for refused in (lambda: f.evaluate(0, {a: mpmath.apery}), lambda: f(mpmath.apery), lambda: f + mpmath.apery,
+                    lambda: fast_picard([[mpmath.apery]], t, [1], 2)):
+        with pytest.raises(BadTypeError, match="Apery"):
+            refused()
 
 
 @pytest.mark.parametrize("constant", [sympy.zeta(3), sympy.TribonacciConstant], ids=str)
