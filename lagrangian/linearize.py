@@ -28,9 +28,9 @@ from typing import Any
 
 from sympy import (
     Dummy,
-    Expr,
     ImmutableDenseMatrix,
     Integer,
+    Pow,
     cos,
     expand,
     eye,
@@ -51,6 +51,7 @@ from .errors import (
     QuantityError,
     SceneError,
 )
+from .inverse import inverse
 from .quantities import quantity, refuse_text
 from .scene import column
 
@@ -197,10 +198,10 @@ class LinearEquations:
         scales = natural_scales(self.scene, omega0) if dimensionless else ()
         tau = fresh_symbol("tau", self.scene, omega0)
         lin = self.divided() if self.scene.equal_rod else self
-        inverse = _inverse(lin.A)
+        A_inverse = inverse(lin.A)
 
         def accelerations(torque: Any, power: int) -> Any:
-            return _times(-inverse, (torque / omega0**power).applyfunc(lambda x: in_scales(x, scales)))
+            return _times(-A_inverse, (torque / omega0**power).applyfunc(lambda x: in_scales(x, scales)))
 
         modes = {q: [accelerations(part, 2) for part in pair]
                  for q, pair in matrix_modes(lin.stiffness, self.t, omega0).items()}
@@ -329,21 +330,14 @@ def _short(matrix: Any) -> str:
     return text if len(text) < 120 else text[:117] + "..."
 
 
-def _inverse(A: Any) -> Any:
-    """``A**-1``; where A holds symbols, as cofactors over the determinant in A's own entries."""
-    if all(entry.is_number for entry in A):
-        return A.to_DM(field=True).inv().to_Matrix()
-    names = {entry: Dummy() for entry in A if not entry.is_number}
-    values = {dummy: entry for entry, dummy in names.items()}
-    adjugate, determinant = A.applyfunc(lambda x: names.get(x, x)).to_DM().adj_det()
-    denominator = determinant if isinstance(determinant, Expr) else adjugate.domain.to_sympy(determinant)
-    return adjugate.to_Matrix().xreplace(values) / denominator.xreplace(values)
-
-
 def _times(left: Any, right: Any) -> Any:
-    """``left @ right``, expanded where ``left`` is a matrix of numbers."""
+    """``left @ right``, expanded where ``left`` is a matrix of numbers without sums in denominators."""
     product = left * right
-    return product.applyfunc(expand) if all(entry.is_number for entry in left) else product
+    return product.applyfunc(expand) if all(entry.is_number and not _is_quotient(entry) for entry in left) else product
+
+
+def _is_quotient(entry: Any) -> bool:
+    return any(x.exp.is_negative and x.base.is_Add for x in entry.atoms(Pow))
 
 
 def _blocks(stiffness: Any, damping: Any) -> Any:
