@@ -523,3 +523,13 @@ def test_negative_indices_count_from_the_end():
     """Of an iterate, its series and the Floquet matrix."""
     for X in (FundamentalMatrix(MATHIEU, t, 2), FundamentalMatrix(MATHIEU, t, 2).series, FloquetMatrix(MATHIEU, t, 2)):
         assert X[-1, 0] == X[1, 0] == X[np.int64(1), -2]
+
+
+@pytest.mark.parametrize("iterate", [FundamentalMatrix(MATHIEU, t, 2), fast_picard(MATHIEU, t, [1, 0], 2)],
+                         ids=["matrix", "vector"])
+@pytest.mark.parametrize("name", ["n", "anything"])
+def test_iterates_take_no_attribute(iterate, name):
+    """Immutable: neither the attributes there are nor others can be set."""
+    with pytest.raises(AttributeError, match=name):
+        setattr(iterate, name, 3)
+    assert iterate.n == 2 and not hasattr(iterate, "anything")
