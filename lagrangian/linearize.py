@@ -291,9 +291,10 @@ def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
 def _remainder(rest: tuple[Any, ...], moments: list[Any], pushes: list[Any]) -> list[Any]:
     """What turns the rods at an equilibrium: the horizontal driving alone, or nothing where it is balanced too."""
     without = [expand(moment - push) for moment, push in zip(moments, pushes, strict=True)]
-    i, k = _first_turned(without), _first_turned(moments)
+    i = _first_turned(without)
     if i is None:
         return moments
+    k = _first_turned(moments)
     if k is None:
         return [Integer(0)] * len(moments)
     still = f", and {-without[i]} rod {i + 1} without the horizontal driving" if any(pushes) else ""
