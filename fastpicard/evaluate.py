@@ -186,8 +186,8 @@ def _root_ball(root: Any) -> Any:
     """A real ``CRootOf``: SymPy counts the real roots of a polynomial first, in ascending order."""
     real = _real_roots(tuple(map(int, reversed(root.poly.all_coeffs()))), ctx.prec)
     if root.index >= len(real):
-        raise BadInputError(f"a value must be real, but {root} is not: its polynomial has {len(real)} real roots.  Use "
-                            f"CRootOf with an index below {len(real)}, or real and imaginary part as parameters.")
+        raise BadInputError(f"a value must be real, but {root} is not: the real roots of its polynomial are those "
+                            f"with an index below {len(real)}.  Use one of them.")
     return real[root.index]
 
 
