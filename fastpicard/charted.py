@@ -20,8 +20,8 @@ from sys import float_info
 from typing import Any
 
 import sympy
-from flint import arb, ctx, fmpq, fmpz_poly
-from sympy import CRootOf, Dummy, Expr, Symbol
+from flint import arb, ctx, fmpq
+from sympy import Expr, Symbol
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
@@ -152,25 +152,12 @@ def _exponents(member: Member, powers: Sequence[tuple[Symbol, int]], axes: tuple
 
 @lru_cache(maxsize=512)
 def _constant(e: Expr, bits: int) -> Any:
-    roots = sorted(e.atoms(CRootOf), key=str)
-    names = {root: Dummy() for root in roots}
-    values = {name: _root_ball(root) for root, name in names.items()}
-    return expression_ball(e.xreplace(names), values)
+    return expression_ball(e, {})
 
 
 def constant_ball(e: Expr) -> Any:
     """A constant SymPy expression as a ball at the working precision; roots of polynomials included."""
     return _constant(e, ctx.prec)
-
-
-def _root_ball(root: Any) -> Any:
-    """A real ``CRootOf``: real roots come first, in ascending order."""
-    coefficients = [int(c) for c in reversed(root.poly.all_coeffs())]
-    found: Any = fmpz_poly(coefficients).complex_roots()
-    real = sorted((z.real for z, _ in found if z.imag == 0), key=float)
-    if root.index >= len(real):
-        raise BadInputError(f"the parameters must be real, but {root} is not.  Check the modes.")
-    return real[root.index]
 
 
 # -- reading -------------------------------------------------------------------

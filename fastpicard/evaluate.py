@@ -23,7 +23,7 @@ from typing import Any
 
 import mpmath
 import sympy
-from flint import acb, acb_poly, arb, fmpq, fmpz, fmpz_poly
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpz, fmpz_poly
 from mpmath import libmp
 from sympy import Expr, Symbol
 
@@ -166,6 +166,8 @@ def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
         return arb(rational(e))
     if e in _CONSTANTS:
         return _CONSTANTS[e]()
+    if isinstance(e, sympy.CRootOf):
+        return _root_ball(e)
     if not (e.is_Add or e.is_Mul or e.is_Pow or e.func in _FUNCTIONS):
         raise BadInputError(f"no rigorous value of {e} is known: {e.func.__name__} has no ball arithmetic here.  "
                             "Replace it by a Symbol and give that a value.")
@@ -175,6 +177,22 @@ def expression_ball(e: Expr, values: Mapping[Symbol, Any]) -> Any:
     if e.is_Mul:
         return math.prod(parts, start=arb(1))
     return _power(parts[0], parts[1], e.exp) if e.is_Pow else _FUNCTIONS[e.func](*parts)
+
+
+def _root_ball(root: Any) -> Any:
+    """A real ``CRootOf``: SymPy counts the real roots of a polynomial first, in ascending order."""
+    real = _real_roots(tuple(map(int, reversed(root.poly.all_coeffs()))), ctx.prec)
+    if root.index >= len(real):
+        raise BadInputError(f"a value must be real, but {root} is not: the real roots of its polynomial are those "
+                            f"with an index below {len(real)}.  Use one of them.")
+    return real[root.index]
+
+
+@lru_cache(maxsize=256)
+def _real_roots(coefficients: tuple[int, ...], bits: int) -> list[Any]:
+    """The real roots of an irreducible polynomial in disjoint balls of ``bits`` bits, ascending."""
+    found: Any = fmpz_poly(list(coefficients)).complex_roots()
+    return sorted(z.real for z, _ in found if z.imag == 0)
 
 
 def _power(base: Any, exponent: Any, e: Expr) -> Any:

@@ -335,6 +335,7 @@ def fast_picard(P: Any, t: Symbol, x0: Any, n: int, t0: Any = 0) -> PicardIterat
     return PicardIterate(t, order, (matrix.shape[0], 1), found, origin, matrix, tuple(write(x, t) for x in start))
 
 
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class FundamentalMatrix(PicardIterate):
     """``Phi_n``: the n-th exact Picard iterate of ``X' = P(t) X``, ``X(t0) = 1`` ([Neves], section 4).
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from itertools import accumulate, repeat
 from operator import mul
 from typing import Any
@@ -84,6 +85,7 @@ def tabulate(F: FloquetMatrix, box: Values | None, digits: int = 15) -> FloquetM
     return new
 
 
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Tabulated(FloquetMatrix):
     """A Floquet matrix that looks enclosures up first; pickled, it comes back without its table."""
 

@@ -7,7 +7,9 @@ About angles ``about`` at which the chain can stay, with ``theta`` now the devia
 
 The article divides by ``m l**2`` (In[36]); here that is :meth:`LinearEquations.divided`, and the undivided
 matrices keep their units.  Its "equilibrium" allows a remainder from horizontal driving (Out[40]), and so does
-this file: ``about`` must balance weight, springs and vertical driving at every time.
+this file: ``about`` must balance weight, springs and vertical driving at every time.  Where it balances them together
+with the horizontal driving (a drive along the rod, ``tan theta = xi''/g`` in a cart) the chain stays, and no remainder
+is left.
 
 In ``tau = omega0 t`` with ``x = (theta, dtheta/dtau)`` ([Neves] (11), (18))
 
@@ -26,9 +28,9 @@ from typing import Any
 
 from sympy import (
     Dummy,
-    Expr,
     ImmutableDenseMatrix,
     Integer,
+    Pow,
     cos,
     expand,
     eye,
@@ -49,6 +51,7 @@ from .errors import (
     QuantityError,
     SceneError,
 )
+from .inverse import inverse
 from .quantities import quantity, refuse_text
 from .scene import column
 
@@ -195,10 +198,10 @@ class LinearEquations:
         scales = natural_scales(self.scene, omega0) if dimensionless else ()
         tau = fresh_symbol("tau", self.scene, omega0)
         lin = self.divided() if self.scene.equal_rod else self
-        inverse = _inverse(lin.A)
+        A_inverse = inverse(lin.A)
 
         def accelerations(torque: Any, power: int) -> Any:
-            return _times(-inverse, (torque / omega0**power).applyfunc(lambda x: in_scales(x, scales)))
+            return _times(-A_inverse, (torque / omega0**power).applyfunc(lambda x: in_scales(x, scales)))
 
         modes = {q: [accelerations(part, 2) for part in pair]
                  for q, pair in matrix_modes(lin.stiffness, self.t, omega0).items()}
@@ -229,7 +232,7 @@ def linearize(equations: EquationsOfMotion, about: Iterable[Any] | None = None) 
     Raises
     ------
     NotAnEquilibriumError
-        The chain does not stay at ``about``: weight, springs and vertical driving leave a moment there.
+        Weight, springs and vertical driving leave a moment at ``about``, with and without horizontal driving.
     NotASceneError
         ``equations`` is not from :func:`euler_lagrange`.
     SceneError, QuantityError, NotAQuantityError, TextError
@@ -252,8 +255,8 @@ def linearize(equations: EquationsOfMotion, about: Iterable[Any] | None = None) 
     resistance = [-force.xreplace(to_symbols) for force in equations.forcing]
     at_rest = [side.xreplace(still) for side in resistance]
     moving = [side.xreplace(there) for side in resistance]
-    remainder = [expand(side.xreplace(there)) for side in at_rest]
-    _check_equilibrium(scene, rest, remainder, [push.xreplace(to_symbols).xreplace(there) for push in thrust(scene)])
+    pushes = [push.xreplace(to_symbols).xreplace(there) for push in thrust(scene)]
+    remainder = _remainder(rest, [expand(side.xreplace(there)) for side in at_rest], pushes)
     return LinearEquations(
         scene, rest,
         A=equations.mass_matrix.xreplace(to_symbols).xreplace(there),
@@ -285,14 +288,25 @@ def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
     return angles
 
 
-def _check_equilibrium(scene: Scene, rest: tuple[Any, ...], remainder: list[Any], pushes: list[Any]) -> None:
-    for i, (moment, push) in enumerate(zip(remainder, pushes, strict=True), 1):
-        left = expand(moment - push)
-        if left != 0 and left.equals(0) is not True:
-            raise NotAnEquilibriumError(
-                f"the angles {rest} are no equilibrium: there the moment {-left} turns rod {i}.  Linearise about an "
-                f"equilibrium: 0 or pi for every angle is one where no spring is strained."
-            )
+def _remainder(rest: tuple[Any, ...], moments: list[Any], pushes: list[Any]) -> list[Any]:
+    """What turns the rods at an equilibrium: the horizontal driving alone, or nothing where it is balanced too."""
+    without = [expand(moment - push) for moment, push in zip(moments, pushes, strict=True)]
+    i = _first_turned(without)
+    if i is None:
+        return moments
+    k = _first_turned(moments)
+    if k is None:
+        return [Integer(0)] * len(moments)
+    still = f", and {-without[i]} rod {i + 1} without the horizontal driving" if any(pushes) else ""
+    raise NotAnEquilibriumError(
+        f"the angles {rest} are no equilibrium: there the moment {-moments[k]} turns rod {k + 1}{still}.  Linearise "
+        f"about an equilibrium: 0 or pi for every angle is one where no spring is strained."
+    )
+
+
+def _first_turned(moments: list[Any]) -> int | None:
+    """The index of the first moment that is not 0 at all times."""
+    return next((i for i, moment in enumerate(moments) if moment != 0 and moment.equals(0) is not True), None)
 
 
 def _inertia(scene: Scene) -> Any:
@@ -317,21 +331,14 @@ def _short(matrix: Any) -> str:
     return text if len(text) < 120 else text[:117] + "..."
 
 
-def _inverse(A: Any) -> Any:
-    """``A**-1``; where A holds symbols, as cofactors over the determinant in A's own entries."""
-    if all(entry.is_number for entry in A):
-        return A.to_DM(field=True).inv().to_Matrix()
-    names = {entry: Dummy() for entry in A if not entry.is_number}
-    values = {dummy: entry for entry, dummy in names.items()}
-    adjugate, determinant = A.applyfunc(lambda x: names.get(x, x)).to_DM().adj_det()
-    denominator = determinant if isinstance(determinant, Expr) else adjugate.domain.to_sympy(determinant)
-    return adjugate.to_Matrix().xreplace(values) / denominator.xreplace(values)
-
-
 def _times(left: Any, right: Any) -> Any:
-    """``left @ right``, expanded where ``left`` is a matrix of numbers."""
+    """``left @ right``, expanded where ``left`` is a matrix of numbers without sums in denominators."""
     product = left * right
-    return product.applyfunc(expand) if all(entry.is_number for entry in left) else product
+    return product.applyfunc(expand) if all(entry.is_number and not _is_quotient(entry) for entry in left) else product
+
+
+def _is_quotient(entry: Any) -> bool:
+    return any(x.exp.is_negative and x.base.is_Add for x in entry.atoms(Pow))
 
 
 def _blocks(stiffness: Any, damping: Any) -> Any:

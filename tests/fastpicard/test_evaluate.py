@@ -219,7 +219,7 @@ def test_integers_and_fractions_have_no_largest_one(value):
         assert abs(PoissonSeries(a * t, t).evaluate(1, {a: value}, 20) / expected - 1) < 1e-19
 
 
-@pytest.mark.parametrize("constant", [sympy.CRootOf(b**5 - b - 1, 0), sympy.Sum(a / b**2, (b, 1, 3))])
+@pytest.mark.parametrize("constant", [sympy.Product(1 + a / b**2, (b, 1, 3)), sympy.Sum(a / b**2, (b, 1, 3))])
 def test_what_binds_a_symbol_is_refused_by_its_own_name(constant):
     """The bound b is no parameter, and has no value."""
     with pytest.raises(BadInputError, match=f"{type(constant).__name__} has no ball arithmetic here"):
@@ -280,3 +280,34 @@ def test_upper_floats_are_the_least_above(x):
     assert found == np.inf or Fraction(found) >= x
     below = np.nextafter(found, -np.inf)
     assert np.isinf(below) or Fraction(float(below)) < x
+LAGUERRE = b**3 - 9 * b**2 + 18 * b - 6  # the squares of the frequencies of three hanging bobs
+
+
+CLOSE = b**3 - 3 * b + 2 - Rational(1, 10**40)
+
+
+@pytest.mark.parametrize("polynomial", [LAGUERRE, 3 * b**4 - 7 * b + 1, CLOSE], ids=str)
+def test_roots_of_polynomials_have_every_digit(polynomial):
+    """Each real CRootOf against mpmath's roots; two of CLOSE are equal as floats."""
+    with mpmath.workdps(90):
+        coefficients = [mpmath.mpf(int(x.p)) / int(x.q) for x in sympy.Poly(polynomial, b).all_coeffs()]
+        roots = mpmath.polyroots(coefficients, maxsteps=500, extraprec=800)
+        real = sorted(mpmath.re(x) for x in roots if abs(mpmath.im(x)) < mpmath.mpf(10) ** -60)
+        assert len(real) == sympy.Poly(polynomial, b).count_roots()
+        for i, root in enumerate(real):
+            found = PoissonSeries(sympy.CRootOf(polynomial, i) * t, t).evaluate(1, {}, 50)
+            assert abs(found - root) <= abs(root) * mpmath.mpf(10) ** -49
+
+
+def test_roots_of_polynomials_are_values_of_parameters():
+    """As a value, inside a function and in P alike: sin(r) = 2 sin(r/2) cos(r/2)."""
+    root = sympy.CRootOf(LAGUERRE, 1)
+    twice = PoissonSeries(2 * sin(root / 2) * cos(root / 2) * t, t)
+
+    assert PoissonSeries(sin(a) * t, t).evaluate(1, {a: root}, 40) == twice.evaluate(1, {}, 40)
+
+
+def test_roots_that_are_not_real_are_refused():
+    """b**5 - b - 1 has one real root, which SymPy counts first."""
+    with pytest.raises(BadInputError, match="real roots of its polynomial are those with an index below 1"):
+        PoissonSeries(sympy.CRootOf(b**5 - b - 1, 1) * t, t).evaluate(1, {})

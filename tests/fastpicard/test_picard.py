@@ -11,7 +11,7 @@ import sympy
 from hypothesis import given, strategies as st
 from sympy import I, Matrix, Rational, S, Symbol, cos, exp, pi, sin, sqrt
 
-from fastpicard import FloquetMatrix, FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard
+from fastpicard import FloquetMatrix, FundamentalMatrix, PicardIterate, PoissonSeries, fast_picard, picard, tabulate
 from fastpicard.iteration import PackedIncrements, first_increments, identity_columns, in_series
 from fastpicard.matrix import read_matrix
 from fastpicard.ring import expression_of
@@ -523,3 +523,15 @@ def test_negative_indices_count_from_the_end():
     """Of an iterate, its series and the Floquet matrix."""
     for X in (FundamentalMatrix(MATHIEU, t, 2), FundamentalMatrix(MATHIEU, t, 2).series, FloquetMatrix(MATHIEU, t, 2)):
         assert X[-1, 0] == X[1, 0] == X[np.int64(1), -2]
+
+
+@pytest.mark.parametrize("iterate", [
+    FundamentalMatrix(MATHIEU, t, 2), fast_picard(MATHIEU, t, [1, 0], 2), FloquetMatrix(MATHIEU, t, 2),
+    tabulate(FloquetMatrix(MATHIEU, t, 2), {a: (0, 1), b: (0, 1)}, 3),
+], ids=["matrix", "vector", "over a period", "with a table"])
+@pytest.mark.parametrize("name", ["n", "anything"])
+def test_iterates_take_no_attribute(iterate, name):
+    """Immutable: neither the attributes there are nor others can be set."""
+    with pytest.raises(AttributeError, match=name):
+        setattr(iterate, name, 3)
+    assert iterate.n == 2 and not hasattr(iterate, "anything")

@@ -8,9 +8,9 @@ import mpmath
 import pytest
 from flint import acb, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 from hypothesis import assume, given, settings, strategies as st
-from sympy import Matrix, Rational, Symbol, cos, pi, sin, sqrt
+from sympy import CRootOf, Matrix, Rational, Symbol, cos, pi, sin, sqrt
 
-from fastpicard import BadInputError, FloquetMatrix, MissingParameterError, Verdict, tabulate
+from fastpicard import BadInputError, FloquetMatrix, MissingParameterError, Verdict, boundaries, tabulate
 from fastpicard.spectrum import in_rho, root_discs, symplectic_forms
 from fastpicard.stability import is_definite, judge, schur_cohn
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize
@@ -383,3 +383,25 @@ def test_multipliers_that_coincide_exactly_have_digits(entries):
 
     for found in FloquetMatrix(P, t, 0).multipliers({}, digits=12):
         assert abs(found - expected) < 1e-11 * expected
+
+
+@pytest.mark.parametrize("index, verdict", [(0, Verdict.UNSTABLE), (1, Verdict.STABLE), (2, Verdict.STABLE)])
+def test_modes_of_hanging_bobs_have_a_verdict_as_they_are(index, verdict):
+    """Exact mu of three bobs are roots of a cubic: x'' + mu (1 + cos t) x = 0, as with mu's value to 40 digits."""
+    mu = CRootOf(a**3 - 9 * a**2 + 18 * a - 6, index)
+    F = FloquetMatrix(Matrix([[0, 1], [-mu - mu * cos(t), 0]]), t, 10)
+    value = mu.evalf(40)
+
+    assert F.verdict() == MATHIEU.verdict({a: value, b: value}) == verdict
+    assert F.remainder() == pytest.approx(MATHIEU.to_order(10).remainder({a: value, b: value}), rel=1e-9)
+    assert F.enclosure({}, 20)[0, 0].overlaps(MATHIEU.enclosure({a: value, b: value}, 20)[0, 0])
+
+
+def test_boundaries_take_roots_of_polynomials():
+    """The boundary trace = 2 in a, at b a tenth of the least mu of three bobs: a = -b**2 / 2 to second order."""
+    mu = CRootOf(a**3 - 9 * a**2 + 18 * a - 6, 0)
+    above, value = boundaries(MATHIEU.to_order(12))[0], mu.evalf(40)
+
+    found = above.root(a, (-1, Rational(1, 10)), {b: mu / 10})
+    assert found.value == above.root(a, (-1, Rational(1, 10)), {b: value / 10}).value
+    assert found.value == pytest.approx(-(value / 10) ** 2 / 2, rel=1e-2)

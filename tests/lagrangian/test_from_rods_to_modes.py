@@ -2,7 +2,7 @@
 
 import mpmath
 import pytest
-from sympy import CRootOf, Matrix, Rational, Symbol, cos, expand, pi, sin, sqrt, symbols
+from sympy import CRootOf, Matrix, Rational, Symbol, cos, count_ops, exp, expand, pi, sin, sqrt, symbols
 
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize, normal_modes
 
@@ -144,3 +144,18 @@ def test_every_public_object_has_a_short_text_and_a_formula():
     small = linear([rod], Support(xi=cos(t)), damping=[1])
     for thing in (Scene([rod]), euler_lagrange(Scene([rod])), small):
         assert "theta" in thing._repr_latex_()
+
+
+@pytest.mark.parametrize("masses", [
+    [1, 1, sqrt(2)], [1, 1, 1, 1, sqrt(2)], [1, 1, 1, pi], [1, pi, sqrt(3), sqrt(2), exp(2)], [1, 1 / (1 + sqrt(2)), 2],
+    [m, 1, 1, sqrt(2)], [sqrt(2), sqrt(3), sqrt(5), sqrt(7)],
+], ids=str)
+def test_irrational_masses_leave_the_first_order_matrix_short(masses):
+    """A times the block of P is minus the stiffness, to 50 digits; in a field that knows sqrt(2)**2 = 2 it is short."""
+    lin = linear([Rod.uniform(mass, 1) for mass in masses], Support(), gravity=1)
+    n = len(masses)
+    block = lin.first_order(3).P[n:, :n]
+    A, minus_block, stiffness = (x.xreplace({m: Rational(7, 5)}).evalf(60) for x in (lin.A, -9 * block, lin.stiffness))
+
+    assert count_ops(block) < 4000
+    assert max(map(abs, A * minus_block - stiffness)) < Rational(1, 10**50)

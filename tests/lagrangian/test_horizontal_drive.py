@@ -3,10 +3,19 @@
 import mpmath
 import numpy as np
 import pytest
-from sympy import Rational, Symbol, cos, pi, sin, symbols, zeros
+from sympy import Function, Matrix, Rational, Symbol, atan, cos, expand, pi, sin, symbols, zeros
 
 from fastpicard import FloquetMatrix, Verdict, certify
-from lagrangian import InhomogeneousError, Rod, Scene, Support, euler_lagrange, linearize, simulate
+from lagrangian import (
+    InhomogeneousError,
+    NotAnEquilibriumError,
+    Rod,
+    Scene,
+    Support,
+    euler_lagrange,
+    linearize,
+    simulate,
+)
 from tests.oracles import true_fundamental_matrix
 
 t, epsilon, omega0, ratio = symbols("t epsilon omega0 ratio")
@@ -57,6 +66,38 @@ def test_rods_shaken_along_themselves_are_certified_by_the_full_matrix():
                        np.linspace(0, 60 * 2 * np.pi / at[omega0], 400), accuracy=1e-9)
         spread = np.abs(np.asarray(run.theta) - np.pi / 2).max()
         assert spread < 1e-4 if verdict == Verdict.STABLE else spread > 1e-4
+
+
+def expanded(equations, about):
+    """Constant and linear parts of M theta'' - f at ``about + deviation``, by Taylor's formula in one scale."""
+    scale = Symbol("scale")
+    deviations = [Function(f"x{i}")(t) for i in range(len(about))]
+    moved = dict(zip(equations.coordinates, (q + scale * x for q, x in zip(about, deviations))))
+    side = equations.lhs.subs(moved).doit()
+    return [side.diff(scale, k).subs(scale, 0).doit().applyfunc(expand) for k in (0, 1)], deviations
+
+
+@pytest.mark.parametrize("chain, about", [
+    (scene(cos(t), cos(t), rods=1, gravity=0, springs=None), [pi / 4]),
+    (scene(cos(t), cos(t), gravity=0, springs=(0, SPRING)), [pi / 4, pi / 4]),
+    (scene(3 * t**2 / 8, rods=1, springs=None), [atan(Rational(3, 4))]),
+    (scene(3 * t**2 / 8, springs=None), [atan(Rational(3, 4)), pi + atan(Rational(3, 4))]),
+], ids=["along the rod", "along two rods", "in a cart", "in a cart, folded"])
+def test_a_chain_stays_where_the_horizontal_driving_is_balanced_too(chain, about):
+    """The whole moment is 0 there, so no remainder is left; A and stiffness are those of Taylor's formula."""
+    equations = euler_lagrange(chain)
+    small = linearize(equations, about)
+    (constant, linear), deviations = expanded(equations, about)
+    x = Matrix(deviations)
+
+    assert constant == small.remainder == zeros(len(about), 1)
+    assert (small.A * x.diff(t, 2) + small.stiffness * x - linear).applyfunc(expand) == zeros(len(about), 1)
+
+
+def test_what_turns_a_rod_is_the_moment_with_the_horizontal_driving():
+    """At pi/4 in a cart of half the weight's acceleration: sin(pi/4)/2 (1 - 1/2), and sin(pi/4)/2 at rest."""
+    with pytest.raises(NotAnEquilibriumError, match=r"sqrt\(2\)/8 turns rod 1, and sqrt\(2\)/4 rod 1 without"):
+        small(t**2 / 4, rods=1, springs=None, about=[pi / 4])
 
 
 def forced(xi, eta):
