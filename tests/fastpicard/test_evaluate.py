@@ -280,9 +280,9 @@ def test_upper_floats_are_the_least_above(x):
     assert found == np.inf or Fraction(found) >= x
     below = np.nextafter(found, -np.inf)
     assert np.isinf(below) or Fraction(float(below)) < x
+
+
 LAGUERRE = b**3 - 9 * b**2 + 18 * b - 6  # the squares of the frequencies of three hanging bobs
-
-
 CLOSE = b**3 - 3 * b + 2 - Rational(1, 10**40)
 
 
