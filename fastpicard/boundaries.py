@@ -276,22 +276,26 @@ class Boundary:
         """
         size = abs(value) if value != 0 else arb(1)
         radius, least = size * arb(2) ** -40, size * arb(2) ** (8 - ctx.prec)
-        for _ in range(6):
+        for _ in range(5):
             slack = self._slack({**exact, x: arb(value.mid(), radius.upper())})
             if slack is None or slope.contains(0) or not radius <= abs(value) + 1:
                 break
             at = self._dual({**exact, x: value}, (), slack)[0]
-            distance = (2 * abs(at) / abs(slope) + least).upper()
-            if not distance.is_finite():
+            near = (abs(at) / abs(slope) + least).upper()
+            if not near.is_finite():
                 break
-            if distance <= radius:
-                with working(ctx.prec + 32):
-                    left, right = (self._dual({**exact, x: (value + side * distance).mid()}, (), slack)[0]
-                                   for side in (-1, 1))
-                if left < 0 < right or right < 0 < left:
+            for distance in ((near * factor).upper() for factor in (1.25, 2)):
+                if distance <= radius and self._changes_sign(x, {**exact, x: value}, distance, slack):
                     return upper_float(distance)
-            radius = 2 * max(radius, distance)
+            radius = max(1.5 * radius, 1.4 * near)
         return float("inf")
+
+    def _changes_sign(self, x: Symbol, values: dict[Any, Any], distance: Any, slack: list[Any]) -> bool:
+        """Whether the true function has different signs at a distance on both sides."""
+        with working(ctx.prec + 32):
+            left, right = (self._dual({**values, x: (values[x] + side * distance).mid()}, (), slack)[0]
+                           for side in (-1, 1))
+        return bool(left < 0 < right or right < 0 < left)
 
     def _slack(self, values: dict[Any, Any]) -> list[Any] | None:
         """The remainder for every entry; None where ``P`` has a pole in a ball."""
