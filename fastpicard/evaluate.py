@@ -27,10 +27,10 @@ from flint import acb, acb_poly, arb, ctx, fmpq, fmpz, fmpz_poly
 from mpmath import libmp
 from sympy import Expr, Symbol
 
+from fastpicard.constants import exact_constant
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
 from fastpicard.modes import COS, Key, Linear, Modes
 from fastpicard.precision import working
-from fastpicard.reading import exact_constant
 from fastpicard.ring import Monomial, Polynomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero

@@ -228,8 +228,8 @@ class FloquetMatrix:
 
         Notes
         -----
-        Put numbers into ``P`` where orders are high: for Mathieu's equation at ``a = 100`` 191 iterates are needed for
-        1e-10, which takes 4 s with numbers, and two minutes with symbols: 2 GB for one, 11 GB for two.
+        Put numbers into ``P`` where ``sup |P|`` times the period is large: the terms of Mathieu's iterates in s symbols
+        grow as the power s + 2 of the order, and memory with them.
 
         Examples
         --------

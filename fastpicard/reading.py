@@ -20,6 +20,7 @@ from flint import fmpq, fmpq_poly
 from sympy import Basic, Expr, I, Symbol, cos, exp, pi, sin
 
 from fastpicard import modes as algebra
+from fastpicard.constants import exact_constant
 from fastpicard.errors import BadInputError, BadTypeError, NotInFamilyError
 from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes
 from fastpicard.ring import (
@@ -46,27 +47,6 @@ _FAMILY = "is not in the family of sums of t**r cos(q t + phi) and t**r sin(q t 
 
 
 # -- what may come in --------------------------------------------------------
-
-_NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
-    (mpmath.pi, sympy.pi), (mpmath.e, sympy.E), (mpmath.euler, sympy.EulerGamma), (mpmath.catalan, sympy.Catalan),
-    (mpmath.phi, sympy.GoldenRatio), (mpmath.degree, sympy.pi / 180), (mpmath.ln2, sympy.log(2)),
-    (mpmath.ln10, sympy.log(10)),
-)
-
-
-def exact_constant(value: Any, what: str) -> Expr:
-    """A constant of mpmath as the number it names, not as its rounding at the precision of the day.
-
-    Raises
-    ------
-    BadTypeError
-        for those that SymPy has no name for.
-    """
-    for constant, exact in _NAMED:
-        if value is constant:
-            return exact
-    raise BadTypeError(f"{what} must be a number that is known exactly, but it is {value!r}, a constant of mpmath that "
-                       "has no exact form here.  Give its digits, as an mpf or a SymPy Float.")
 
 
 def as_expression(value: Any, what: str = "the expression") -> Expr:

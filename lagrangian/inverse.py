@@ -21,7 +21,7 @@ from sympy.polys.matrices import DomainMatrix
 
 __all__ = ["inverse"]
 
-LARGEST_DEGREE = 8  # of the algebraic field: in one of degree 32 five rods take half a minute, with variables none
+LARGEST_DEGREE = 8  # of the algebraic field: arithmetic in large ones is slower than with variables
 
 
 def inverse(A: Any) -> Any:

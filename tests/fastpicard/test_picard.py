@@ -166,7 +166,7 @@ def test_the_engine_in_integers_agrees_with_the_engine_in_series(P, n):
 @pytest.mark.parametrize("n", [12, 40])
 @pytest.mark.parametrize("drive", [2 + cos(t), 2 + b * cos(t), a + b * cos(t)], ids=str)
 def test_memory_is_that_of_the_terms(drive, n):
-    """Not of all increments, where their terms are like: of 41 there would be 20 times as many numbers."""
+    """Not of all increments, where their terms are like: they would be several times as many numbers."""
     Phi = FundamentalMatrix(Matrix([[0, 1], [-drive, 0]]), t, n)
     found = Phi.increments.iterate
     held = {id(row): row.length() for columns in (found.sums, found.newest) for column in columns
