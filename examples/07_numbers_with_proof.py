@@ -1,7 +1,7 @@
 """How far an iterate is from the truth, and what is proved whatever the order.
 
 For Mathieu's equation at two points: the true error of the iterates of order 1 to 80, the a-posteriori bound, which
-is the same to a percent, and the a-priori bound, which is not.  Then an enclosure of the true Floquet matrix,
+is the same to a few percent, and the a-priori bound, which is not.  Then an enclosure of the true Floquet matrix,
 multipliers, and verdicts with their reasons.  Writes ``docs/images/remainder.png``.
 """
 

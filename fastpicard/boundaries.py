@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import numbers
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -31,7 +31,7 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.duals import Dual, derivative
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, namesake
 from fastpicard.evaluate import Values, check_digits, exact_values, free_symbols, refine, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
@@ -160,7 +160,7 @@ class Root:
     value: Any
     error: float
     evaluations: int
-    slopes: Mapping[Symbol, float]
+    slopes: Mapping[Symbol, float] = field(hash=False)
 
     def _repr_latex_(self) -> str:
         proved = rf"\pm {number(self.error, 2)}" if self.error < math.inf else sentence(", not proved")
@@ -251,15 +251,18 @@ class Boundary:
             if the signs at both ends agree.
         """
         wanted = check_digits(digits) or 15
+        if not isinstance(x, Symbol):
+            raise BadTypeError(f"the unknown must be a SymPy Symbol, but it is {x!r}.  Use one of "
+                               f"{list(self.symbols)}.")
         if x not in self.symbols:
             raise BadInputError(f"the unknown must be one of the parameters {list(self.symbols)}, but it is {x}.  "
-                                "Choose one of these.")
+                                f"Choose one of these.{namesake((x,), self.symbols)}")
         if not isinstance(bracket, tuple | list) or len(bracket) != 2:
             raise BadTypeError(f"the bracket must be two numbers (lo, hi), but it is {bracket!r}.  Give both ends.")
         if x in mapping_of(fixed):
             raise BadInputError(f"the unknown is sought, but {x} is fixed at {mapping_of(fixed)[x]}.  Leave it out of "
                                 "fixed.")
-        exact = exact_values({**mapping_of(fixed), x: 0}, self.parameters, self._F.t)
+        exact = exact_values(mapping_of(fixed), self.parameters - {x}, self._F.t)
         with working(dps_to_prec(wanted) + 64):
             value, count = zero(lambda here: self._dual({**exact, x: here}, (x,)), bracket, arb(10) ** -wanted)
             dual = self._dual({**exact, x: value}, (x, *(s for s in self.symbols if s != x)))

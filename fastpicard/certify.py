@@ -13,6 +13,7 @@ leave out, rounding.  A rectangle that is decided is decided for every point in 
 
 from __future__ import annotations
 
+import math
 import numbers
 import time
 from collections.abc import Callable, Mapping
@@ -25,7 +26,7 @@ from fastpicard import plotting
 from fastpicard.charted import Axis, Charted, images, read_chart, refuse_phases
 from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Values, ball, exact_number, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
@@ -72,6 +73,14 @@ class CertifiedChart:
     seconds: float
     lines: tuple[Array, ...] = field(default=(), repr=False)
     radius: float = float("nan")
+
+    def __post_init__(self) -> None:
+        for array in (self.cells, self.codes, *self.lines):
+            array.flags.writeable = False
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()
 
     @property
     def areas(self) -> Array:
@@ -236,9 +245,13 @@ def _limit(value: Any, name: str) -> float:
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise BadTypeError(f"{name} must be a number, but it is {value!r}, a {type(value).__name__}.  "
                            f"Use {name}=1.")
-    if not float(value) >= 0:
-        raise BadInputError(f"{name} must be 0 or more, but it is {value}.  Use 10 seconds and undecided=1e-4, say.")
-    return float(value)
+    if not 0 <= value:  # type: ignore[operator]
+        raise BadInputError(f"{name} must be 0 or more, but it is {printed(value)}.  Use 10 seconds and "
+                            "undecided=1e-4, say.")
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
 
 
 def _result(state: Halving, order: int, error: float) -> CertifiedChart:

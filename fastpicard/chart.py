@@ -27,7 +27,7 @@ from sympy import Symbol
 
 from fastpicard.charted import Charted, Member, read_chart
 from fastpicard.collapsed import Collapsed
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
@@ -87,8 +87,8 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     problem = read_chart(F, x, y, fixed, modes)
     across, up = _counts(points, 2, "points", "a chart needs two points along each axis")
     if chunks is None and across * up > MOST:
-        raise BadInputError(f"a chart in memory has {MOST:,} points at most, but {across} times {up} are asked for.  "
-                            "Use chunks=(1000, 1000).")
+        raise BadInputError(f"a chart in memory has {MOST:,} points at most, but {printed(across)} times "
+                            f"{printed(up)} are asked for.  Use chunks=(1000, 1000).")
     np, Chart = numpy(), chart_type()
     first, second = problem.axes
     xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)
@@ -146,9 +146,9 @@ def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
 
 def _counts(given: Any, least: int, name: str, claim: str) -> Sequence[int]:
     if not isinstance(given, tuple | list) or len(given) != 2 or not all(isinstance(k, int) for k in given):
-        raise BadTypeError(f"{name} must be (across, up), but it is {given!r}.  Use {name}=(400, 400).")
+        raise BadTypeError(f"{name} must be (across, up), but it is {printed(given)}.  Use {name}=(400, 400).")
     if min(given) < least:
-        raise BadInputError(f"{claim}, but {name} is {given!r}.  Use (400, 400).")
+        raise BadInputError(f"{claim}, but {name} is {printed(given)}.  Use (400, 400).")
     return given
 
 

@@ -24,7 +24,7 @@ from flint import arb, ctx, fmpq
 from sympy import Expr, Symbol
 
 from fastpicard.collapsed import Collapsed
-from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, namesake, printed
 from fastpicard.evaluate import Values, exact_number, expression_ball, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.reading import as_expression
@@ -192,7 +192,8 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
                                         f"axes, and one does not give {missing[0]}.  Add {missing[0]}: ... to it.")
         if missing:
             raise MissingParameterError(f"every parameter must be on an axis or have a value, but "
-                                        f"{', '.join(map(str, missing))} is neither.  Give it in fixed={{...}}.")
+                                        f"{', '.join(map(str, missing))} is neither.  Give it in fixed={{...}}."
+                                        + namesake(missing, (first.symbol, second.symbol, *numbers)))
         zeros = [s for row in F.P.rows for entry in row for _, _, monomial in entry
                  for s, e in parameters_of(monomial)[0] if e < 0 and member[s][0] == 0]
         if zeros:
@@ -239,8 +240,8 @@ def fixed_numbers(fixed: Values | None, free: Iterable[Symbol]) -> dict[Symbol, 
     numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
     for s in free:
         if s in numbers:
-            raise BadInputError(f"a parameter has one value, but {s} is fixed at {numbers[s]} and is also on an axis "
-                                "or given by the modes.  Leave it out of fixed.")
+            raise BadInputError(f"a parameter has one value, but {s} is fixed at {printed(numbers[s])} and is "
+                                "also on an axis or given by the modes.  Leave it out of fixed.")
     return numbers
 
 
@@ -265,7 +266,7 @@ def axis_of(given: Any, name: str) -> Axis:
         raise BadTypeError(f"{name} must be (Symbol, lo, hi), but it is {given!r}.  Use {name}=(a, -1, 5), say.")
     symbol, lo, hi = given[0], *(end_of_axis(end, f"an end of {given[0]}") for end in given[1:])
     if not lo < hi:
-        raise BadInputError(f"{name} must be an interval with lo < hi, but it is {given!r}.  Exchange the ends.")
+        raise BadInputError(f"{name} must be an interval with lo < hi, but it is {printed(given)}.  Exchange the ends.")
     return Axis(symbol, lo, hi)
 
 
@@ -288,8 +289,8 @@ def end_of_axis(value: Any, what: str) -> float:
     except OverflowError:
         found = math.inf
     if not math.isfinite(found) or 0 < abs(found) < float_info.min:
-        raise BadInputError(f"{what} must be a float, but {value} is beyond them.  Measure the parameter in other "
-                            "units.")
+        raise BadInputError(f"{what} must be a float, but {printed(value)} is beyond them.  Measure the "
+                            "parameter in other units.")
     return found
 
 

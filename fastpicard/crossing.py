@@ -72,7 +72,7 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
         raise BadTypeError(f"curves cross in a plane of two Symbols, but they are {x!r} and {y!r}.  Use "
                            "crossing(f, g, a, b, (0, 1)), say.")
     names = (x, y)
-    exact = exact_values({**fixed_numbers(fixed, names), x: 0, y: 0}, f.parameters | g.parameters, f._F.t)
+    exact = exact_values(fixed_numbers(fixed, names), (f.parameters | g.parameters) - {x, y}, f._F.t)
     with working(192):
         center = [exact_ball(z) for z in point_of(start)]
         for part in (f, g):  # as many bits as cancel in them

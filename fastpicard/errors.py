@@ -6,6 +6,12 @@ also the built-in exception a caller would have guessed.
 """
 
 
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+
 class FastPicardError(Exception):
     """Whatever this package refuses to answer."""
 
@@ -36,3 +42,17 @@ class MissingParameterError(BadInputError):
 
 class NotInstalledError(FastPicardError, ImportError):
     """The work asked for is done by a package that is not installed."""
+
+
+def printed(value: Any) -> str:
+    """A value in a message: Python refuses to print integers of thousands of digits."""
+    try:
+        return repr(value) if isinstance(value, str) else str(value)
+    except ValueError:
+        return f"a {type(value).__name__} of too many digits to print"
+
+
+def namesake(symbols: Iterable[Any], others: Iterable[Any]) -> str:
+    """The sentence for a Symbol that was given in place of another which prints alike; empty where there is none."""
+    names = {s.name for s in symbols} & {getattr(other, "name", None) for other in others}
+    return f"  The {min(names)} given is another Symbol: they share the name but not the assumptions." if names else ""

@@ -28,7 +28,7 @@ from mpmath import libmp
 from sympy import Expr, Symbol
 
 from fastpicard.constants import exact_constant
-from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, namesake, printed
 from fastpicard.modes import COS, Key, Linear, Modes
 from fastpicard.precision import working
 from fastpicard.ring import Monomial, Polynomial, expression_of, rational, symbols_of
@@ -59,6 +59,7 @@ def exact_number(value: Any, what: str) -> Any:
     BadInputError
         for nan and infinities.
     """
+    value = value.item() if getattr(value, "shape", None) == () else value
     if isinstance(value, mpmath.mp.constant):
         return exact_constant(value, what)
     if isinstance(value, arb):
@@ -110,21 +111,21 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
         if the time ``t`` is among them, or a Symbol that is an integer is given another number.
     """
     if values is not None and not isinstance(values, Mapping):
-        raise BadTypeError(f"values must map SymPy Symbols to numbers, but they are {values!r}, "
+        raise BadTypeError(f"values must map SymPy Symbols to numbers, but they are {printed(values)}, "
                            f"a {type(values).__name__}.  Use a dictionary: {{a: 2}}.")
     given = values or {}
     if t in given:
-        raise BadInputError(f"the time {t} is no parameter, but the values give it: {given}.  "
+        raise BadInputError(f"the time {t} is no parameter, but the values give it: {printed(given)}.  "
                             "The time is an argument of its own.")
     for key in given:
         if not isinstance(key, Symbol):
-            raise BadTypeError(f"values must map SymPy Symbols to numbers, but a key is {key!r}, "
+            raise BadTypeError(f"values must map SymPy Symbols to numbers, but a key is {printed(key)}, "
                                f"a {type(key).__name__}.  Use the Symbol itself: {{a: 2}}.")
     missing = sorted((s for s in needed if s not in given), key=str)
     if missing:
         names = ", ".join(map(str, missing))
-        raise MissingParameterError(f"every parameter needs a value, but {names} has none among {given}.  "
-                                    f"Add {names} to the values.")
+        raise MissingParameterError(f"every parameter needs a value, but {names} has none among {printed(given)}.  "
+                                    f"Add {names} to the values.{namesake(missing, given)}")
     exact = {s: (number or exact_number)(value, f"the value of {s}") for s, value in given.items()}
     for s, value in exact.items():
         fraction = value.q != 1 if isinstance(value, fmpq) else isinstance(value, Expr) and not value.is_integer
@@ -136,7 +137,7 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
 def no_integer(s: Symbol, value: Any) -> BadInputError:
     """The refusal of a value that the assumptions of a Symbol exclude."""
     return BadInputError(f"{s} is an integer by its assumptions, which SymPy has made use of, but its value is "
-                         f"{value}.  Give an integer, or use a Symbol without that assumption.")
+                         f"{printed(value)}.  Give an integer, or use a Symbol without that assumption.")
 
 
 def ball(value: Any) -> Any:
@@ -303,11 +304,11 @@ def check_digits(digits: Any) -> int | None:
 def count_of_digits(digits: Any, kind: str = "a positive integer", least: str = "15") -> int:
     """A positive number of decimal digits, where float64 is none of the answers; refusals name what would do."""
     if isinstance(digits, bool) or not isinstance(digits, numbers.Integral):
-        raise BadTypeError(f"digits must be {kind}, but it is {digits!r}.  Use digits=50, say.")
+        raise BadTypeError(f"digits must be {kind}, but it is {printed(digits)}.  Use digits=50, say.")
     if digits < 1:
-        raise BadInputError(f"digits must be at least 1, but it is {digits}.  Use digits={least}.")
+        raise BadInputError(f"digits must be at least 1, but it is {printed(digits)}.  Use digits={least}.")
     if int(digits) > MOST_DIGITS:
-        raise BadInputError(f"digits must be at most {MOST_DIGITS}, but it is {digits}.  Use fewer.")
+        raise BadInputError(f"digits must be at most {MOST_DIGITS}, but it is {printed(digits)}.  Use fewer.")
     return int(digits)
 
 

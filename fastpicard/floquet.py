@@ -23,12 +23,12 @@ from fastpicard import modes as algebra
 from fastpicard.collapsed import Collapsed
 from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, printed
 from fastpicard.evaluate import Values, ball, check_digits, count_of_digits, exact_number, to_complex, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
-from fastpicard.matrix import SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
+from fastpicard.matrix import AsMatrix, SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
 from fastpicard.modes import Modes
 from fastpicard.parameters import BOUND_BITS, is_box, numbers_in, problem_at
 from fastpicard.period import check_period, whole_turns
@@ -36,7 +36,7 @@ from fastpicard.picard import check_order
 from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
-from fastpicard.ring import ONE, Polynomial, multiply, symbols_of
+from fastpicard.ring import ONE, Polynomial, multiply, read_only, symbols_of
 from fastpicard.spectrum import Multiplier, general_multipliers, keeps_area, reciprocal_multipliers, symplectic_forms
 from fastpicard.stability import Verdict, judge
 from fastpicard.vectorise import vectorise
@@ -44,7 +44,7 @@ from fastpicard.writing import write
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
-class FloquetMatrix:
+class FloquetMatrix(AsMatrix):
     """``Phi_n(T)``: the n-th exact Picard iterate of the Floquet matrix, a polynomial in the parameters and ``T``.
 
     Immutable.  Exact for the n-th iterate: :meth:`as_matrix`, :meth:`trace`, :meth:`evaluate` and
@@ -102,7 +102,8 @@ class FloquetMatrix:
                    first_increments(matrix, identity_columns(matrix.shape[0]), order))
 
     def _fill(self, P: SeriesMatrix, n: int, period: Expr, length: Polynomial, increments: Increments) -> None:
-        for name, value in (("P", P), ("n", n), ("period", period), ("length", length), ("increments", increments)):
+        for name, value in (("P", P), ("n", n), ("period", period), ("length", read_only(length)),
+                            ("increments", increments)):
             object.__setattr__(self, name, value)
 
     @property
@@ -114,6 +115,11 @@ class FloquetMatrix:
     def shape(self) -> tuple[int, int]:
         """(m, m)."""
         return self.P.shape
+
+    @property
+    def free_symbols(self) -> set[Symbol]:
+        """The parameters, those of the period too."""
+        return self.P.free_symbols | symbols_of(self.length)
 
     @cached_property
     def turns(self) -> int:
@@ -150,10 +156,10 @@ class FloquetMatrix:
         return {}
 
     def entry(self, i: int, j: int) -> Modes:
-        """Entry ``(i, j)`` in the engine's form; raises ShapeError where there is none."""
+        """Entry ``(i, j)`` in the engine's form, read only; raises BadInputError where there is none."""
         i, j = place((i, j), self.shape)
         if (i, j) not in self._entries:
-            self._entries[i, j] = algebra.frozen(self.increments.whole_turns(i, j), self._powers)
+            self._entries[i, j] = read_only(algebra.frozen(self.increments.whole_turns(i, j), self._powers))
         return self._entries[i, j]
 
     def _all(self) -> list[Modes]:
@@ -244,7 +250,7 @@ class FloquetMatrix:
         first = cls(P, t, 0, period)
         limit = exact_number(tol, "tol")
         if not ball(limit) > 0:
-            raise BadInputError(f"tol must be positive, but it is {tol}.  Use 1e-12, say.")
+            raise BadInputError(f"tol must be positive, but it is {printed(tol)}.  Use 1e-12, say.")
         exact = first.numbers(values)
         with working(BOUND_BITS):
             return first.to_order(smallest_order(*first.at(exact), ball(limit)))
@@ -376,11 +382,15 @@ class FloquetMatrix:
         paired, _ = self._structure(exact)
         tried = wanted + 5
         while True:
-            matrix = self.enclosure(values, tried)
+            matrix = self._true(exact, tried, strict=False)
             with working(dps_to_prec(tried) + 64):
                 found = reciprocal_multipliers(matrix) if paired else general_multipliers(matrix)
                 if all(m.digits >= wanted for m in found):
                     return found
+            if is_box(exact) and tried > 2 * wanted + 20:
+                raise BadInputError(f"the digits asked for cannot be had: {wanted} were asked for, and the multipliers "
+                                    f"have {max(min(m.digits for m in found), 0):.0f}: the parameters are balls with a "
+                                    "radius.  Give numbers, narrower balls, or fewer digits.")
             if tried > 12 * wanted + 200:
                 raise BadInputError(f"the multipliers have not {wanted} digits with {tried} digits of the Floquet "
                                     "matrix: several coincide or nearly so.  Ask for fewer digits.")
@@ -393,8 +403,10 @@ class FloquetMatrix:
         -------
         Verdict
             ``Verdict.STABLE`` (all solutions bounded for ``t >= 0``), ``Verdict.UNSTABLE`` or ``Verdict.UNDECIDED``,
-            with the sentence that proves it as ``.reason``.  Undecided means within ``1e-100`` of a boundary, or
-            a box that a boundary may cross.  Where ``P`` is constant with rational entries it is never undecided.
+            with the sentence that proves it as ``.reason``.  Undecided means that the trace, or what else is asked,
+            is within some ``1e-100`` of the end of stability (in parameters that is ``1e-50`` where two boundaries
+            touch), or a box that a boundary may cross.  Where ``P`` is constant with rational entries it is never
+            undecided.
 
         Raises
         ------

@@ -21,7 +21,7 @@ import mpmath
 from flint import arb
 from mpmath.libmp import dps_to_prec, from_rational
 
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import ball, count_of_digits, exact_number
 from fastpicard.mathieu_guess import Guess, float_guess
 from fastpicard.mathieu_matrices import Matrix
@@ -51,7 +51,7 @@ def mathieu_a(r: int, q: Any, digits: int = 15) -> Any:
     negative, q infinite or nan, digits not from 1 to 10,000,000, a ball q too wide for ``digits``, a matrix of
     more than a million rows).
 
-    Speed and accuracy: see `mathieu_a_enclosure`, which does the work and gives the ball itself.
+    Speed and accuracy: see ``fastpicard.mathieu.mathieu_a_enclosure``, which does the work and gives the ball itself.
 
     >>> mpmath.nstr(mathieu_a(0, 25, digits=30), 30)
     '-40.2567795465667872758017193249'
@@ -105,7 +105,8 @@ def _matrix(name: str, r: Any) -> Matrix:
     r = _integer(r, f"r in {name}_r(q)")
     least = 0 if name == "a" else 1
     if r < least:
-        raise BadInputError(f"{name}_r(q) needs an integer r >= {least}, got r = {r}: r counts the zeros of an "
+        raise BadInputError(f"{name}_r(q) needs an integer r >= {least}, got r = {printed(r)}: r counts the "
+                            "zeros of an "
                             f"{'even' if name == 'a' else 'odd'} solution.  Take r = {least} for the lowest.")
     if r % 2:
         return Matrix(name, r, 1, 1 if name == "a" else -1)
@@ -114,7 +115,8 @@ def _matrix(name: str, r: Any) -> Matrix:
 
 def _integer(value: Any, what: str) -> int:
     if isinstance(value, (bool, str)) or not hasattr(value, "__index__"):
-        raise BadTypeError(f"{what} must be an integer, got {value!r} of type {type(value).__name__}.  Pass an int.")
+        raise BadTypeError(f"{what} must be an integer, got {printed(value)} of type {type(value).__name__}.  "
+                           "Pass an int.")
     return int(operator.index(value))
 
 
@@ -142,7 +144,7 @@ def _rounded(name: str, r: Any, q: Any, digits: Any) -> Any:
     known = f"{name}_{matrix.r} lies in {found.str(20)}, which does not fix {digits} digits"
     if _is_wide(q):
         raise BadInputError(f"q is the ball {q!r}; {known}.  Ask for fewer digits, give a narrower q, or take the "
-                            f"ball from mathieu_{name}_enclosure.")
+                            f"ball from fastpicard.mathieu.mathieu_{name}_enclosure.")
     raise BadInputError(f"{known}, for q = {q!r}: it cannot be told from a tie.  Change digits by one.")
 
 

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, printed
 from fastpicard.mathieu_matrices import Matrix, Section, norm
 from fastpicard.precision import working
 
@@ -134,5 +134,5 @@ def _rows(matrix: Matrix, size: float, x: float, bits: int) -> int:
 
 
 def _too_large(matrix: Matrix, size: float) -> BadInputError:
-    return BadInputError(f"{matrix.name}_r(q) at r = {matrix.r}, |q| = {size:.6g} needs a matrix of more than "
+    return BadInputError(f"{matrix.name}_r(q) at r = {printed(matrix.r)}, |q| = {size:.6g} needs a matrix of more than "
                          f"{MAX_ROWS} rows.  Use the asymptotic series: DLMF 28.8.1 (large q), 28.6.14 (large r).")

@@ -3,7 +3,8 @@ r"""Immutable matrices of Poisson series in one time."""
 from __future__ import annotations
 
 import numbers
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,38 +13,68 @@ import sympy
 from sympy import ImmutableMatrix, Symbol
 
 from fastpicard import modes as algebra
-from fastpicard.errors import BadInputError, BadTypeError, ShapeError
-from fastpicard.evaluate import Values, check_digits, evaluate, numpy
+from fastpicard.errors import BadInputError, BadTypeError, ShapeError, printed
+from fastpicard.evaluate import Values, check_digits, evaluate, free_symbols, numpy
 from fastpicard.latex import shown, summary
 from fastpicard.modes import Modes
-from fastpicard.reading import as_finite, as_time, check_same_time, read, read_constant, shifted
-from fastpicard.ring import Polynomial
+from fastpicard.reading import as_finite, as_time, check_same_time, plain, read, read_constant, shifted
+from fastpicard.ring import Polynomial, read_only
 from fastpicard.series import PoissonSeries
 from fastpicard.writing import write, write_at
 
 Rows = tuple[tuple[Modes, ...], ...]
 
 
+class AsMatrix(ABC):
+    """What SymPy and NumPy make of a matrix that is exact in the engine's form: that of :meth:`as_matrix`."""
+
+    __slots__ = ()
+    __iter__ = None
+
+    @abstractmethod
+    def as_matrix(self) -> ImmutableMatrix:
+        """The matrix of canonical SymPy expressions."""
+
+    def _sympy_(self) -> ImmutableMatrix:
+        return self.as_matrix()
+
+    def _latex(self, printer: Any) -> str:
+        return str(printer.doprint(self.as_matrix()))
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        return numpy().array(self.as_matrix().tolist(), dtype=dtype)
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class SeriesMatrix:
+class SeriesMatrix(AsMatrix):
     """A matrix whose entries are exact Poisson series in one time symbol.
 
     Immutable; ``==`` is mathematical equality; no operation rounds.
+
+    Made from a SymPy Matrix or nested lists of expressions, and the time.
 
     Attributes
     ----------
     shape : (rows, columns)
     t : Symbol                  the time
-    rows : tuple of tuples      the entries as :mod:`fastpicard.modes`
+    rows : tuple of tuples      the entries as :mod:`fastpicard.modes`, read only
     """
 
     rows: Rows
     t: Symbol
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rows", tuple(tuple(map(read_only, row)) for row in _series(self.rows, self.t)))
+
     @property
     def shape(self) -> tuple[int, int]:
         """(rows, columns)."""
         return len(self.rows), len(self.rows[0])
+
+    @property
+    def free_symbols(self) -> set[Symbol]:
+        """The parameters: every symbol but the time."""
+        return set().union(*(free_symbols(modes) for row in self.rows for modes in row))
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
         i, j = place(index, self.shape)
@@ -143,11 +174,12 @@ def place(index: Any, shape: tuple[int, int]) -> tuple[int, int]:
     integers = isinstance(index, tuple) and len(index) == 2 and all(
         isinstance(k, numbers.Integral) and not isinstance(k, bool) for k in index)
     if not integers:
-        raise BadTypeError(f"an entry has two integers as its index, but it is {index!r}.  "
+        raise BadTypeError(f"an entry has two integers as its index, but it is {printed(index)}.  "
                            "Use X[0, 1], or X.as_matrix() for parts of the matrix.")
     i, j = map(int, index)
     if not all(-size <= k < size for k, size in zip((i, j), shape, strict=True)):
-        raise BadInputError(f"a matrix of shape {shape} has no entry {(i, j)}.  Rows and columns count from 0.")
+        raise BadInputError(f"a matrix of shape {shape} has no entry {printed((i, j))}.  Rows and columns count "
+                            "from 0.")
     return i % shape[0], j % shape[1]
 
 
@@ -189,7 +221,11 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
     """
     t = as_time(t)
     if callable(P) and not isinstance(P, sympy.MatrixBase):
-        P = P(t)
+        try:
+            P = P(t)
+        except (TypeError, AttributeError) as error:
+            raise BadTypeError(f"P must be a matrix, or a function of a SymPy Symbol, but P({t}) ends with: {error}  "
+                               "Write its cosines as sympy.cos.") from error
     rows = _entries(P, "P")
     if not rows or any(len(row) != len(rows) for row in rows):
         lengths = {len(row) for row in rows} or {0}
@@ -201,7 +237,19 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
     return SeriesMatrix(entries, t)
 
 
+def _series(rows: Any, t: Symbol) -> Rows:
+    """Entries in the engine's form, read where they are expressions."""
+    if isinstance(rows, tuple) and all(isinstance(modes, Mapping) for row in rows for modes in row):
+        return rows
+    read_rows = tuple(tuple(read(e, as_time(t)) for e in row) for row in _entries(rows, "a matrix of series"))
+    if len({len(row) for row in read_rows} - {0}) != 1:
+        raise ShapeError(f"the rows of a matrix must have one length, but these have {[len(row) for row in read_rows]}."
+                         "  Fill them up.")
+    return read_rows
+
+
 def _entries(matrix: Any, what: str) -> list[list[Any]]:
+    matrix = plain(matrix)
     if isinstance(matrix, str):
         raise BadTypeError(f"{what} must be a SymPy Matrix, but it is the text {matrix!r}, which is never evaluated.  "
                            "Build it from sympy.Symbol objects.")
@@ -223,10 +271,16 @@ def _read_entry(entry: Any, t: Symbol, i: int, j: int) -> Modes:
                           f"{error}") from None
 
 
+def as_list(x0: Any) -> Any:
+    """The components of a column or row of SymPy or NumPy, or of nested lists of that shape."""
+    x0 = list(x0) if isinstance(x0, sympy.MatrixBase) and 1 in x0.shape else plain(x0)
+    nested = isinstance(x0, list | tuple) and all(isinstance(row, list | tuple) and len(row) == 1 for row in x0)
+    return [row[0] for row in x0] if nested else x0
+
+
 def read_vector(x0: Any, t: Symbol, size: int) -> tuple[Modes, ...]:
     """The initial vector ``x0``, free of ``t``, with as many entries as ``P`` has rows."""
-    if isinstance(x0, sympy.MatrixBase) and 1 in x0.shape:
-        x0 = list(x0)
+    x0 = as_list(x0)
     if isinstance(x0, str) or not isinstance(x0, list | tuple):
         raise BadTypeError(f"x0 must be a list or a column vector, but it is {x0!r}.  Give its {size} components.")
     if len(x0) != size:

@@ -12,7 +12,7 @@ from typing import Any
 from flint import arb
 from sympy import Expr
 
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Point, Values, ball, exact_number, exact_values, free_symbols
 from fastpicard.harmonics import Harmonics, harmonics
 from fastpicard.matrix import SeriesMatrix
@@ -38,13 +38,16 @@ def numbers_in(P: SeriesMatrix, values: Values | None, others: Iterable[Any] = (
 
 def _number_or_interval(value: Any, what: str) -> Any:
     if not isinstance(value, tuple):
-        return exact_number(value, what)
+        try:
+            return exact_number(value, what)
+        except BadTypeError as error:
+            raise BadTypeError(f"{error}  For an interval, give the pair (lo, hi), or a ball.") from None
     if len(value) != 2:
-        raise BadInputError(f"an interval is a pair (lo, hi), but {what} is {value!r}.  Give two numbers.")
+        raise BadInputError(f"an interval is a pair (lo, hi), but {what} is {printed(value)}.  Give two numbers.")
     with working(256):
         lo, hi = (ball(exact_number(end, f"an end of {what}")) for end in value)
         if lo > hi:
-            raise BadInputError(f"an interval is a pair (lo, hi) with lo <= hi, but {what} is {value!r}.  "
+            raise BadInputError(f"an interval is a pair (lo, hi) with lo <= hi, but {what} is {printed(value)}.  "
                                 "Exchange the two.")
         return lo.union(hi)
 

@@ -11,7 +11,7 @@ from flint import fmpq
 from sympy import Expr, pi
 
 from fastpicard import modes as algebra
-from fastpicard.errors import BadInputError, NotPeriodicError
+from fastpicard.errors import BadInputError, NotPeriodicError, printed
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Modes
 from fastpicard.reading import as_finite, as_polynomial, read_constant
@@ -26,7 +26,7 @@ def check_period(matrix: SeriesMatrix, period: Any) -> Polynomial:
         raise BadInputError(f"the period must be exact, but {expression} is a float: its cosines are not exactly 1.  "
                             "Use an exact period such as 2*pi.")
     if expression.is_positive is False:
-        raise BadInputError(f"the period must be positive, but it is {expression}.  Use 2*pi, say.")
+        raise BadInputError(f"the period must be positive, but it is {printed(expression)}.  Use 2*pi, say.")
     length = as_polynomial(read_constant(expression, matrix.t, "the period"))
     for i, row in enumerate(matrix.rows):
         for j, modes in enumerate(row):
@@ -44,9 +44,9 @@ def _check_mode(matrix: SeriesMatrix, place: tuple[int, int], mode: Modes, lengt
     if f.degree() > 0:
         evidence, remedy = "which is not periodic but grows with the time", "Only trigonometric polynomials repeat."
     else:
-        evidence = f"which makes {turns} of a turn in that time"
+        evidence = f"which makes {printed(turns)} of a turn in that time"
         remedy = _remedy(matrix)
-    raise NotPeriodicError(f"P does not repeat with period {period}: entry P[{i}, {j}] contains "
+    raise NotPeriodicError(f"P does not repeat with period {printed(period)}: entry P[{i}, {j}] contains "
                            f"{write(mode, matrix.t)}, {evidence}.  {remedy}")
 
 

@@ -26,12 +26,12 @@ from sympy import Basic, Expr, ImmutableMatrix, Matrix, Symbol
 from sympy.logic.boolalg import Boolean
 
 from fastpicard.collapsed import Collapsed
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Values
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
-from fastpicard.matrix import SeriesMatrix, latex_or_summary, read_matrix, read_vector
-from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, read_constant
+from fastpicard.matrix import AsMatrix, SeriesMatrix, as_list, latex_or_summary, read_matrix, read_vector
+from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, plain, read_constant
 from fastpicard.ring import Polynomial, to_expression
 from fastpicard.series import PoissonSeries
 from fastpicard.vectorise import vectorise
@@ -45,12 +45,14 @@ SPECIAL = (sympy.fresnels, sympy.fresnelc, sympy.erf, sympy.erfi, sympy.Si, symp
 def check_order(n: Any) -> int:
     """The order of an iterate, an integer from 0 to LARGEST_ORDER."""
     if isinstance(n, bool) or not isinstance(n, numbers.Integral):
-        raise BadTypeError(f"the order n must be an integer, but it is {n!r}, a {type(n).__name__}.  Use n=20, say.")
+        raise BadTypeError(f"the order n must be an integer, but it is {printed(n)}, a {type(n).__name__}.  Use "
+                           "n=20, say.")
     if n < 0:
-        raise BadInputError(f"the order n must be an integer from 0 up, but it is {n}.  n counts the integrations.")
+        raise BadInputError(f"the order n must be an integer from 0 up, but it is {printed(n)}.  n counts the "
+                            "integrations.")
     if int(n) > LARGEST_ORDER:
-        raise BadInputError(f"an iterate is made of all orders before it, and the order n is {n}.  Use at most "
-                            f"{LARGEST_ORDER}; iterates rarely gain anything beyond 100.")
+        raise BadInputError(f"an iterate is made of all orders before it, and the order n is {printed(n)}.  Use "
+                            f"at most {LARGEST_ORDER}; iterates rarely gain anything beyond 100.")
     return int(n)
 
 
@@ -115,8 +117,7 @@ def _integral(integrand: Expr, s: Symbol, lower: Expr, upper: Expr) -> Expr:
 
 
 def _slope(value: Any) -> Matrix:
-    if isinstance(value, sympy.MatrixBase):
-        value = value.tolist()
+    value = value.tolist() if isinstance(value, sympy.MatrixBase) else plain(value)
     if isinstance(value, str) or not isinstance(value, list | tuple):
         raise BadTypeError(f"f(t, x) must be a list or a column vector, but it is {value!r}.  Return its components.")
     rows = [row if isinstance(row, list | tuple) else [row] for row in value]
@@ -148,6 +149,7 @@ def _plain_constant(value: Any, t: Symbol, what: str) -> Expr:
 
 
 def _plain_vector(x0: Any, t: Symbol) -> list[Expr]:
+    x0 = as_list(x0)
     if isinstance(x0, str) or not isinstance(x0, list | tuple | sympy.MatrixBase):
         raise BadTypeError(f"x0 must be a list or a column vector, but it is {x0!r}.  Give its components.")
     return [_plain_constant(value, t, f"x0[{i}]") for i, value in enumerate(x0)]
@@ -157,7 +159,7 @@ def _plain_vector(x0: Any, t: Symbol) -> list[Expr]:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PicardIterate:
+class PicardIterate(AsMatrix):
     """The exact n-th Picard iterate of ``x' = P(t) x``, one column for each initial vector.
 
     Immutable.  Coefficients are exact rationals times parameters; nothing is
@@ -168,7 +170,9 @@ class PicardIterate:
     t : Symbol              the time
     n : int                 the order
     shape : (rows, columns)
-    P : SeriesMatrix, x0 : the initial vector as expressions, or None for the identity matrix
+    P : SeriesMatrix
+    t0 : Expr               the initial time
+    x0 : the initial vector as expressions, or None for the identity matrix
 
     Notes
     -----
@@ -188,10 +192,19 @@ class PicardIterate:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """The arguments: the iterate is computed again."""
-        t0 = to_expression(self.origin)
         if self.x0 is None:
-            return FundamentalMatrix, (self.P, self.t, self.n, t0)
-        return fast_picard, (self.P, self.t, self.x0, self.n, t0)
+            return FundamentalMatrix, (self.P, self.t, self.n, self.t0)
+        return fast_picard, (self.P, self.t, self.x0, self.n, self.t0)
+
+    @property
+    def t0(self) -> Expr:
+        """The initial time."""
+        return to_expression(self.origin)
+
+    @property
+    def free_symbols(self) -> set[Symbol]:
+        """The parameters, those of ``t0`` and ``x0`` too."""
+        return self.P.free_symbols.union(self.t0.free_symbols, *(x.free_symbols for x in self.x0 or ()))
 
     def to_order(self, n: int) -> PicardIterate:
         """The iterate of order ``n``, at the cost of the increments that are new; a lower one is computed anew."""

@@ -16,12 +16,12 @@ from typing import Any
 
 import mpmath
 import sympy
-from flint import fmpq, fmpq_poly
+from flint import fmpq, fmpq_poly, fmpz
 from sympy import Basic, Expr, I, Symbol, cos, exp, pi, sin
 
 from fastpicard import modes as algebra
 from fastpicard.constants import exact_constant
-from fastpicard.errors import BadInputError, BadTypeError, NotInFamilyError
+from fastpicard.errors import BadInputError, BadTypeError, NotInFamilyError, printed
 from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes
 from fastpicard.ring import (
     ONE,
@@ -58,11 +58,14 @@ def as_expression(value: Any, what: str = "the expression") -> Expr:
         for ``str`` (SymPy would evaluate it as code), for anything that is no scalar, and for a constant of mpmath
         that SymPy has no name for.
     """
+    value = plain(value)
     if isinstance(value, str):
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is the text {value!r}, "
                            "which is never evaluated as mathematics.  Build it from sympy.Symbol objects.")
     if isinstance(value, Expr) and not isinstance(value, sympy.Lambda):
         return value
+    if isinstance(value, fmpq | fmpz):
+        return sympy.Rational(int(fmpq(value).p), int(fmpq(value).q))
     if isinstance(value, mpmath.mp.constant):
         return exact_constant(value, what)
     scalar = isinstance(value, numbers.Number) or hasattr(value, "_sympy_")
@@ -72,6 +75,11 @@ def as_expression(value: Any, what: str = "the expression") -> Expr:
     if isinstance(value, Decimal) and value.is_finite():
         return sympy.Rational(*value.as_integer_ratio())  # SymPy would round it to 15 digits
     return sympy.sympify(value)
+
+
+def plain(value: Any) -> Any:
+    """What a NumPy array holds, as nested lists, or as a number where it has no axes; anything else unchanged."""
+    return value.tolist() if hasattr(value, "dtype") and hasattr(value, "tolist") else value
 
 
 def as_finite(value: Any, what: str) -> Expr:
@@ -215,8 +223,8 @@ def _times_power(modes: Modes, r: int, number: Any, monomial: Monomial) -> Modes
 
 def _checked_power(exponent: Any, e: Expr) -> int:
     if exponent > MAXIMAL_POWER:
-        raise BadInputError(f"powers up to {MAXIMAL_POWER} are supported, but {e} has the power {exponent}.  "
-                            "Rescale the problem.")
+        raise BadInputError(f"powers up to {MAXIMAL_POWER} are supported, but {printed(e)} has the power "
+                            f"{printed(exponent)}.  Rescale the problem.")
     return int(exponent)
 
 

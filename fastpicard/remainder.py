@@ -96,15 +96,7 @@ def _peak(P: Harmonics, period: Any) -> float:
 
 
 def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
-    """The smallest ``n`` from which on the bound meets ``tol``: largest row sum.
-
-    Raises BadInputError where increments grow up to an order beyond ``LARGEST_PEAK``.
-    """
-    peak = _peak(P, period)
-    if not peak <= LARGEST_PEAK:
-        raise BadInputError(f"increments grow up to the order Pbar T, which is about {peak:.3g} here, and an iterate "
-                            f"is of no use before.  Use enclosure(values), which needs none, a shorter period, or "
-                            f"smaller parameters.")
+    """The smallest ``n`` from which on the bound meets ``tol``: largest row sum; raises as :func:`a_priori_order`."""
     last = a_priori_order(P, period, tol / 100)
     rest = a_priori(P, period, last)
     for level in range(0, LEVELS, 2):
@@ -122,7 +114,15 @@ def smallest_order(P: Harmonics, period: Any, tol: Any) -> int:
 
 
 def a_priori_order(P: Harmonics, period: Any, tol: Any) -> int:
-    """The smallest ``n`` from 1 up whose a-priori bound meets ``tol``: largest row sum."""
+    """The smallest ``n`` from 1 up whose a-priori bound meets ``tol``: largest row sum.
+
+    Raises BadInputError where increments grow up to an order beyond ``LARGEST_PEAK``.
+    """
+    peak = _peak(P, period)
+    if not peak <= LARGEST_PEAK:
+        raise BadInputError(f"increments grow up to the order Pbar T, which is about {peak:.3g} here, and an iterate "
+                            f"is of no use before.  Use enclosure(values), which needs none, a shorter period, or "
+                            f"smaller parameters.")
     return least_order(lambda n: bool(largest_row_sum(a_priori(P, period, n)) <= tol))
 
 

@@ -26,7 +26,8 @@ from collections.abc import Iterable
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import floor, gcd, lcm
-from typing import Any
+from types import MappingProxyType
+from typing import Any, TypeVar, cast
 
 import sympy
 from flint import fmpq
@@ -40,6 +41,7 @@ from fastpicard.errors import BadInputError, NotInFamilyError
 Exponent = int | Fraction
 Monomial = tuple[tuple[int, Exponent], ...]
 Polynomial = dict[Monomial, Any]  # Monomial -> fmpq
+Terms = TypeVar("Terms", bound="dict[Any, Any]")
 
 ONE: Monomial = ()
 
@@ -51,6 +53,11 @@ _sums: dict[int, Polynomial] = {}  # what the generators are that are polynomial
 _UNIT = fmpq(1)
 _TINY, _LARGE = 1e-12, 1e12
 _LARGEST_DENOMINATOR = 10_000
+
+
+def read_only(terms: Terms) -> Terms:
+    """The same terms for others to read, who cannot change them."""
+    return terms if isinstance(terms, MappingProxyType) else cast(Terms, MappingProxyType(terms))
 
 
 def generator(expression: Expr) -> int:

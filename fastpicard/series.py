@@ -15,7 +15,7 @@ from sympy import Expr, Symbol
 
 from fastpicard import modes as algebra
 from fastpicard.equality import support, vanishes
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Values, evaluate, free_symbols
 from fastpicard.latex import sentence, shown
 from fastpicard.modes import Modes
@@ -161,10 +161,11 @@ class PoissonSeries:
 
     def __pow__(self, exponent: int) -> PoissonSeries:
         if isinstance(exponent, bool) or not isinstance(exponent, numbers.Integral):
-            raise BadTypeError(f"the exponent must be an int, but it is {exponent!r}.  Use an integer from 0 up.")
+            raise BadTypeError(f"the exponent must be an int, but it is {printed(exponent)}.  Use an integer "
+                               "from 0 up.")
         if exponent < 0:
             raise BadInputError("a power of a series is a series for exponents from 0 up, but the exponent is "
-                                f"{exponent}.  Negative powers leave the family.")
+                                f"{printed(exponent)}.  Negative powers leave the family.")
         result = self._make(algebra.constant({ONE: rational(sympy.Integer(1))}))
         for _ in range(int(exponent)):
             result = result * self
@@ -233,6 +234,9 @@ class PoissonSeries:
         return write(self._modes, self._t)
 
     _sympy_ = as_expr
+
+    def _latex(self, printer: Any) -> str:
+        return str(printer.doprint(self.as_expr()))
 
     def __str__(self) -> str:
         return str(self.as_expr())

@@ -27,6 +27,7 @@ from typing import Any, ClassVar
 
 from flint import arb, arb_mat
 
+from fastpicard.errors import BadInputError
 from fastpicard.evaluate import numpy
 from fastpicard.latex import sentence, shown
 from fastpicard.spectrum import Disc, in_rho, root_discs
@@ -51,6 +52,11 @@ class Verdict:
 
     name: str
     reason: str = field(default="", compare=False)
+
+    def __post_init__(self) -> None:
+        if self.name not in ("STABLE", "UNSTABLE", "UNDECIDED"):
+            raise BadInputError(f"a verdict is STABLE, UNSTABLE or UNDECIDED, but it is {self.name!r}.  Use "
+                                "Verdict.STABLE, say.")
 
     def because(self, reason: str) -> Verdict:
         """The same outcome with its reason."""
@@ -101,13 +107,21 @@ def judge(matrix: Any, paired: bool, forms: list[Any]) -> Verdict:
 
 def by_trace(trace: Any) -> Verdict:
     """The verdict from the trace of a 2 x 2 matrix of determinant 1 ([Neves] (15))."""
-    shown = trace.str(12)
+    end = 2 if trace > 0 else -2
     if abs(trace) < 2:
-        return Verdict.STABLE.because(f"the determinant is 1 and the trace {shown} lies strictly between -2 and 2")
+        return Verdict.STABLE.because(f"the determinant is 1 and the trace {_told_from(end, trace)} lies strictly "
+                                      "between -2 and 2")
     if abs(trace) > 2:
-        return Verdict.UNSTABLE.because(f"the determinant is 1 and the trace {shown} exceeds 2 in absolute value, so "
-                                        "one multiplier is outside the unit circle")
-    return Verdict.UNDECIDED.because(f"the trace {shown} cannot be told from {2 if trace > 0 else -2}")
+        return Verdict.UNSTABLE.because(f"the determinant is 1 and the trace {_told_from(end, trace)} exceeds 2 in "
+                                        "absolute value, so one multiplier is outside the unit circle")
+    return Verdict.UNDECIDED.because(f"the trace, which differs from {end} by {(trace - end).str(3)}, cannot be told "
+                                     "from it")
+
+
+def _told_from(end: int, trace: Any) -> str:
+    """A trace as printed: where few digits would hold the end of stability, how far from it."""
+    shown = str(trace.str(12))
+    return shown if not arb(shown).contains(end) else f"{end} + {(trace - end).str(5)}"
 
 
 def _by_rho(discs: list[Disc]) -> Verdict | None:

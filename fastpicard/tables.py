@@ -26,7 +26,7 @@ from mpmath.libmp import dps_to_prec
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.enclosure import mirrored, shortfall
-from fastpicard.errors import BadInputError, BadTypeError
+from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Point, Values, check_digits, refine, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, reversal
@@ -34,6 +34,7 @@ from fastpicard.precision import working
 from fastpicard.remainder import a_priori_order, largest_row_sum
 
 SPARE_DIGITS = 5  # what entries lose to cancellation, mostly
+HIGHEST = 300  # order of a table: beyond, the terms of an iterate in one parameter fill the memory
 
 
 def tabulate(F: FloquetMatrix, box: Values | None, digits: int = 15) -> FloquetMatrix:
@@ -117,9 +118,14 @@ class Table:
             P, h = self._at(box)
             self.order = a_priori_order(P, h, arb(10) ** -(digits + SPARE_DIGITS))
             growth = upper_float(largest_row_sum((P.bound * h).exp()))
+        if self.order > HIGHEST:
+            raise BadInputError(f"a table is an iterate of order {HIGHEST} at most, but in {printed(dict(box))} "
+                                f"{digits} digits take one of order {self.order}.  Take a box nearer to 0, "
+                                "fewer digits, "
+                                "or F.enclosure.")
         if growth == math.inf:
             raise BadInputError(f"a table covers a box of parameters in which solutions stay below 1e308, but in "
-                                f"{dict(box)} they may grow further.  Take smaller ones.")
+                                f"{printed(dict(box))} they may grow further.  Take smaller ones.")
         self.bits = dps_to_prec(digits + SPARE_DIGITS) + 8 + 2 * math.ceil(math.log2(growth))
         with working(self.bits):
             self._read(F.over(self.turns, self.order))

@@ -28,7 +28,7 @@ from sympy import Matrix, Symbol, latex
 from fastpicard.charted import Charted, Exponents, read_chart
 from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import criterion
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, printed
 from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
@@ -93,7 +93,7 @@ class Tube:
     def points(self, count: int = 9) -> tuple[Array, Array]:
         """Points of the curve, for pictures: arrays of a and b, in floats; ``count`` of them, an integer from 1."""
         if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise BadInputError(f"a curve is drawn through a number of points, but count is {count!r}.  Use 9.")
+            raise BadInputError(f"a curve is drawn through a number of points, but count is {printed(count)}.  Use 9.")
         np = numpy()
         line = np.linspace(-1, 1, count)
         return np.polynomial.polynomial.polyval(line, [float(c) for c in self.coefficients]), np.clip(
@@ -195,7 +195,7 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
         raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} "
                             f"is {slope.tolist()}.  Choose as x the parameter that is added to q.")
     if isinstance(radius, bool) or not isinstance(radius, numbers.Real) or not LEAST_RADIUS <= radius <= 1:
-        raise BadInputError(f"the radius of tubes must be from {LEAST_RADIUS} to 1, but it is {radius!r}.  Use "
+        raise BadInputError(f"the radius of tubes must be from {LEAST_RADIUS} to 1, but it is {printed(radius)}.  Use "
                             "radius=1e-8.")
     work = _Work(chart, float(radius))
     pieces = work.run()

@@ -30,7 +30,7 @@ from sympy import Symbol
 from fastpicard import doubledouble
 from fastpicard.collapsed import Collapsed, Variable
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
-from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError
+from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError, namesake
 from fastpicard.evaluate import Point, no_integer, numpy, to_number
 from fastpicard.precision import working
 
@@ -216,7 +216,7 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
     if missing:
         absent = ", ".join(map(str, missing))
         raise MissingParameterError(f"every parameter must be an argument, but {absent} is missing among "
-                                    f"{list(names)}.  Add it to the list.")
+                                    f"{list(names)}.  Add it to the list.{namesake(missing, names)}")
     evaluator = Evaluator(collapsed, names)
 
     def function(*values: Array) -> Any:

@@ -755,7 +755,8 @@ def test_what_is_no_matrix_is_refused(P):
         a,
         {1, 2},
         iter([1, 2]),
-        np.array([1, 2]),
+        np.array([1, 2, 3]),
+        np.eye(2),
     ],
     ids=shown,
 )

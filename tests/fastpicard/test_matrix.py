@@ -71,9 +71,11 @@ def test_shapes_must_fit():
             wrong()
 
 
-def test_a_matrix_is_not_equal_to_anything_else():
-    """Other types are other things."""
-    assert of(GENERAL) != GENERAL
+def test_a_matrix_is_equal_to_the_same_one():
+    """That of SymPy too, in the canonical form; nothing else is."""
+    assert of(GENERAL) == GENERAL
+    assert of(GENERAL) != GENERAL + GENERAL
+    assert of(GENERAL) != "matrix"
     assert of(GENERAL) != of(GENERAL + GENERAL)
     assert of(GENERAL) == of(GENERAL.copy())
 
