@@ -245,7 +245,7 @@ def _limit(value: Any, name: str) -> float:
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise BadTypeError(f"{name} must be a number, but it is {value!r}, a {type(value).__name__}.  "
                            f"Use {name}=1.")
-    if not 0 <= value:  # type: ignore[operator]
+    if not value >= 0:  # type: ignore[operator]
         raise BadInputError(f"{name} must be 0 or more, but it is {printed(value)}.  Use 10 seconds and "
                             "undecided=1e-4, say.")
     try:

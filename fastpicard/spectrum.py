@@ -138,11 +138,12 @@ def in_rho(matrix: Any) -> Any:
 
 @dataclass(frozen=True)
 class Disc:
-    """A disc that holds roots: as many as its cluster has discs.
+    """A disc of a cluster that holds as many roots as it has discs; one of several may hold none.
 
     Attributes
     ----------
     center : acb, exact;  radius : arb, exact
+    reach : arb       the radius around the center that covers the whole cluster
     cluster : int     discs that hang together have the same number
     alone : bool      whether it is a cluster by itself: then it holds one root
     real : bool       whether that root is proved to be real
@@ -150,14 +151,15 @@ class Disc:
 
     center: Any
     radius: Any
+    reach: Any
     cluster: int
     alone: bool
     real: bool
 
     @property
     def ball(self) -> Any:
-        """The square around the disc; on the real line where the root is real."""
-        around = arb(0, self.radius)
+        """A square that holds the root, and every other of its cluster; on the real line where the root is real."""
+        around = arb(0, self.reach)
         return acb(self.center.real + around, 0 if self.real else self.center.imag + around)
 
 
@@ -198,8 +200,10 @@ def _discs(p: Any, centers: list[Any]) -> list[Disc]:
         if not abs(centers[i] - centers[j]) > radii[i] + radii[j]:
             old, new = clusters[j], clusters[i]
             clusters = [new if c == old else c for c in clusters]
-    return [Disc(z, r, c, clusters.count(c) == 1, clusters.count(c) == 1 and bool(z.imag == 0))
-            for z, r, c in zip(centers, radii, clusters, strict=True)]
+    found = list(zip(centers, radii, clusters, strict=True))
+    reaches = [max((abs(z - w) + s).upper() for w, s, other in found if other == c) for z, _, c in found]
+    return [Disc(z, r, reach, c, clusters.count(c) == 1, clusters.count(c) == 1 and bool(z.imag == 0))
+            for (z, r, c), reach in zip(found, reaches, strict=True)]
 
 
 def _approximate_roots(p: Any) -> list[Any]:

@@ -6,6 +6,7 @@ import pickle
 
 import mpmath
 import pytest
+import sympy
 from flint import acb, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 from hypothesis import assume, given, settings, strategies as st
 from sympy import CRootOf, Matrix, Rational, Symbol, cos, pi, sin, sqrt
@@ -209,6 +210,32 @@ def test_discs_hold_the_roots(roots):
         for z in roots:
             assert any(not abs(acb(z.real, z.imag) - d.center) > d.radius for d in discs)
         assert all(not d.real or any(z.imag == 0 for z in roots) for d in discs if d.alone)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+@given(st.integers(-(2**40), 2**40))
+@settings(max_examples=8)
+def test_the_square_of_every_disc_holds_a_root_that_coincides_with_others(count, numerator):
+    """Of (x - r)**n in balls single discs may miss r; their squares hold the whole cluster."""
+    with ctx.workprec(997):
+        r = arb(numerator) / 2**40
+        p = arb_poly([-r, 1]) ** count
+        p = arb_poly([*(c + arb(0, arb(2) ** -960) for c in p.coeffs()[:-1]), 1])
+        assert all(d.ball.contains(acb(r)) for d in root_discs(p))
+
+
+def test_equal_oscillators_that_are_stable_have_no_multiplier_proved_off_the_circle():
+    """Three multipliers coincide; that they are on the circle is not proved, but nor is the contrary."""
+    S = sympy.eye(3) * (Rational(11, 6) + cos(t) / 7)
+    F = FloquetMatrix(sympy.zeros(3).row_join(sympy.eye(3)).col_join((-S).row_join(sympy.zeros(3))), t, 0)
+    single = FloquetMatrix(Matrix([[0, 1], [-S[0, 0], 0]]), t, 0)
+    true = [m.ball for m in single.multiplier_enclosures({}, 60)]
+
+    assert F.verdict() == Verdict.STABLE
+    for digits in (15, 30):
+        found = F.multiplier_enclosures({}, digits)
+        assert not any(m.on_unit_circle is False for m in found)
+        assert all(any(m.ball.overlaps(z) for z in true) for m in found)
 
 
 @given(st.lists(st.floats(-0.95, 0.95), min_size=2, max_size=4), st.floats(1.1, 3))
