@@ -6,7 +6,8 @@ For one degree of freedom the margin is ``2 - |trace|``; for modes, the least of
 ``min (2 - |rho|)`` over the real rho, and ``-max |Im rho|`` where one is not real; with damping, one minus the largest
 modulus of a multiplier.
 
-Where P reverses in time the trace is ``2 + 4 B C`` (module ``halfway``), from the n-th iterate at half the period.
+Where P reverses in time and has no diagonal the trace is ``2 + 4 B C`` (module ``halfway``), from the n-th iterate at
+half the period.
 Two bounds make up the error of a trace: that of the evaluation (module ``vectorise``) and the remainder of the iterate,
 here the a-priori one at every point: ``sum over k > n of (Pbar T)**k / k!``, which for ``y'' + s(t) y = 0`` has
 ``sqrt(sup |s|) T`` for ``Pbar T``.  Where ``y'' = q y`` with q > 0 at all times, unstable by convexity, none is needed.
@@ -32,12 +33,14 @@ from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, pairs, reversal
 from fastpicard.local import BITS, convex, span_at
+from fastpicard.matrix import SeriesMatrix
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.sweeps import chart_type, in_parts
 from fastpicard.vectorise import Evaluator
 
 Array = Any
+RESULTS = ("trace", "margin", "error", "verdict")
 MOST = 10**8  # points of a chart in memory, some ten floats each while it is computed
 
 
@@ -91,13 +94,16 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
                             f"{printed(up)} are asked for.  Use chunks=(1000, 1000).")
     np, Chart = numpy(), chart_type()
     first, second = problem.axes
+    dims = (str(second.symbol), str(first.symbol))
+    if {*dims} & {*RESULTS}:
+        raise BadInputError(f"a chart holds arrays called {', '.join(RESULTS)}, but its axes are called "
+                            f"{' and '.join(dims)}.  Use a Symbol of another name.")
     xs, ys = np.linspace(first.lo, first.hi, across), np.linspace(second.lo, second.hi, up)
     if chunks is None:
         trace, margin, error, verdict = _sample(problem, xs, ys)
     else:
         part = _counts(chunks, 1, "chunks", "a part of a chart has at least one point along each axis")
         trace, margin, error, verdict = in_parts(partial(_sample, problem), xs, ys, part)
-    dims = (str(second.symbol), str(first.symbol))
     return Chart(
         {"trace": (dims, trace, {"long_name": "trace of the Floquet matrix"}),
          "margin": (dims, margin, {"long_name": "distance from the boundary: positive where stable"}),
@@ -126,7 +132,7 @@ def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
     paired, _ = pairs(problem.F.P)
     scalar = _is_scalar(problem)
-    compute = _by_matrix if not scalar else _by_factors if reversal(problem.F.P) == (1, -1) else _by_trace
+    compute = _by_matrix if not scalar else _by_factors if _is_mirrored(problem.F.P) else _by_trace
     best: list[Array] = []
     for member in problem.members:
         found = list(compute(problem, member, grid, paired))
@@ -142,6 +148,11 @@ def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])
     verdict[open_[convex_there]] = -1
     return np.stack([trace, margin, error, verdict]).reshape(4, len(ys), len(xs))
+
+
+def _is_mirrored(P: SeriesMatrix) -> bool:
+    """Whether ``trace = 2 + 4 B C``: time reverses, and no diagonal makes ``det X`` at half the period other than 1."""
+    return reversal(P) == (1, -1) and not P.rows[0][0] and not P.rows[1][1]
 
 
 def _counts(given: Any, least: int, name: str, claim: str) -> Sequence[int]:
@@ -218,6 +229,29 @@ def _amplitudes(problem: Charted, member: Member, grid: list[Array]) -> Array:
     return bound
 
 
+def _margin_of_pairs(multipliers: Array, moved: Array) -> tuple[Array, Array]:
+    """The margin of ``rho = lambda + 1/lambda``, and its error, where multipliers may have moved so far.
+
+    Values of rho are real or come with their conjugates.  One that may be real is, unless that of another pair is so
+    near that both may be off the real line: then nothing is known.  Of a pair the multiplier inside the circle is left
+    out, as its reciprocal is known better.
+    """
+    np = numpy()
+    outer = abs(multipliers) >= 1 - moved[:, None]
+    rho = multipliers + 1 / multipliers
+    slack = np.where(outer, moved[:, None] * (1 + 1 / abs(multipliers) ** 2), 0)
+    real = outer & (abs(rho.imag) <= slack)
+    each = np.where(real, 2 - abs(rho.real), -abs(rho.imag))
+    margin, error = np.where(outer, each, np.inf).min(axis=1), slack.max(axis=1)
+    itself = np.eye(multipliers.shape[1], dtype=bool)
+    distance = abs(multipliers[:, None, :] - 1 / multipliers[:, :, None])
+    distance[:, itself] = np.inf
+    others = outer[:, None, :] & ~itself & (distance > distance.min(axis=2, keepdims=True))
+    near = abs(rho[:, None, :] - rho.conj()[:, :, None]) <= slack[:, None, :] + slack[:, :, None]
+    unknown = (real[:, :, None] & others & near).any(axis=(1, 2))
+    return margin, np.where(unknown & (margin > 0), np.maximum(error, margin), error)
+
+
 def _remainder(problem: Charted, member: Member, grid: list[Array], part: float = 1.0) -> Array:
     """A bound of the entries of ``Phi - Phi_n`` after a part of the period: the a-priori sum.
 
@@ -253,13 +287,12 @@ def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool
     multipliers, vectors = np.linalg.eig(matrices)
     with np.errstate(all="ignore"):
         condition = np.linalg.cond(vectors)
+        rounding = 2.0**-48 * abs(matrices).max(axis=(1, 2))
+        moved = (bounds.max(axis=0) + _remainder(problem, member, grid) + rounding) * size * np.minimum(condition, 1e8)
         if paired:
-            rho = multipliers + 1 / multipliers
-            real = abs(rho.imag) <= 1e-6 * (1 + abs(rho))
-            margin = np.where(real, 2 - abs(rho.real), -abs(rho.imag)).min(axis=1)
+            margin, error = _margin_of_pairs(multipliers, moved)
         else:
-            margin = 1 - abs(multipliers).max(axis=1)
-        error = (bounds.max(axis=0) + _remainder(problem, member, grid)) * size * np.minimum(condition, 1e8)
+            margin, error = 1 - abs(multipliers).max(axis=1), moved
     trace = np.trace(matrices, axis1=1, axis2=2)
     return (np.where(good, trace, np.nan), np.where(good, margin, np.nan),
             np.where(good & np.isfinite(error), error, np.inf))

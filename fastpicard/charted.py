@@ -255,8 +255,9 @@ def mapping_of(fixed: Values | None) -> Values:
 def axes_of(x: Any, y: Any) -> tuple[Axis, Axis]:
     """Two axes; raises as :func:`axis_of`, and where both are of one parameter."""
     first, second = axis_of(x, "x"), axis_of(y, "y")
-    if first.symbol == second.symbol:
-        raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two.")
+    if first.symbol.name == second.symbol.name:
+        raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two, of "
+                            "different names.")
     return first, second
 
 

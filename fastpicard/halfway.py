@@ -10,7 +10,7 @@ The boundaries of stability then fall apart into factors.  ``Phi(T) -+ 1 = s X**
 
     det(Phi(T) - 1) = 4**N det B det C,        det(Phi(T) + 1) = 4**N det A det D.
 
-For one degree of freedom ``det X = 1`` and
+Where P has no diagonal, as for one degree of freedom, ``det X = 1`` and
 
     trace - 2 = 4 B C,        trace + 2 = 4 A D:
 

@@ -5,7 +5,7 @@ import pickle
 import matplotlib
 import numpy as np
 import pytest
-from sympy import Matrix, Rational, cos, sqrt
+from sympy import Matrix, Rational, Symbol, cos, sin, sqrt
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, certify, chart, tubes
@@ -68,6 +68,45 @@ def test_coupled_and_damped_systems():
     assert both.mean() > 0.9
     assert (whole["verdict"].values == modes["verdict"].values)[both].all()
     assert int(damped["verdict"].sel(a=0.5, b=0.1, method="nearest")) == 1
+
+
+def test_a_diagonal_that_changes_areas_at_half_the_period_is_taken_along():
+    """P = [[b sin t, 1], [-a, 0]] reverses in time, but det Phi(T/2) = exp(2 b): the trace is not 2 + 4 B C."""
+    F = FloquetMatrix(Matrix([[b * sin(t), 1], [-a, 0]]), t, 40)
+    data = chart(F, (a, 0.1, 1), (b, -1, 1), points=(10, 9))
+    for y in data["b"].values:
+        for x in data["a"].values:
+            cell = data.sel(a=x, b=y)
+            assert abs(float(cell["trace"]) - F.trace_at({a: float(x), b: float(y)})) <= float(cell["error"])
+
+
+def test_weak_sum_resonance_is_not_stable():
+    """Frequencies 1/3 + 2/3 = 1: rho leaves the real line by 1e-8 and more, far more than the error."""
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-Rational(1, 9) - a, -b * cos(t), 0, 0],
+                [-b * cos(t), -Rational(4, 9), 0, 0]])
+    data = chart(FloquetMatrix(P, t, 60), (a, -1e-9, 1e-9), (b, 1e-8, 9e-7), points=(3, 5))
+
+    assert float(data["error"].max()) < 1e-11
+    assert (data["verdict"] == -1).all()
+
+
+@pytest.mark.parametrize("n", [28, 32, 36])
+def test_the_error_of_coupled_charts_covers_rho_off_the_real_line_by_truncation(n):
+    """Two oscillators without coupling at b = 0: their rho are 2 cos(2 pi omega), of the iterate nearly so."""
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-a, 0, 0, 0], [0, -Rational(5, 12) - b * cos(t), 0, 0]])
+    data = chart(FloquetMatrix(P, t, n), (a, 1.5, 1.6), (b, 0, 0.1), points=(3, 3)).sel(b=0)
+    for x in data["a"].values:
+        cell = data.sel(a=x)
+        true = 2 - max(abs(2 * np.cos(2 * np.pi * np.sqrt(omega2))) for omega2 in (x, 5 / 12))
+        assert abs(float(cell["margin"]) - true) <= float(cell["error"])
+
+
+def test_the_axes_of_a_chart_have_names_of_their_own():
+    """Not those of its arrays, nor one name for two Symbols."""
+    with pytest.raises(BadInputError, match="arrays called trace"):
+        chart(FloquetMatrix(P.subs(a, Symbol("error")), t, 3), (Symbol("error"), 0, 1), (b, 0, 1))
+    with pytest.raises(BadInputError, match="different names"):
+        chart(MATHIEU, (a, 0, 1), (Symbol("a", positive=True), 0, 1))
 
 
 @pytest.mark.parametrize("F, fixed", [(MATHIEU, None), (DAMPED, {c: Rational(1, 5)})])
