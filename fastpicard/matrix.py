@@ -46,6 +46,7 @@ class SeriesMatrix:
         return len(self.rows), len(self.rows[0])
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
+        """One entry."""
         i, j = place(index, self.shape)
         return PoissonSeries.from_modes(self.rows[i][j], self.t)
 

@@ -168,7 +168,8 @@ class PicardIterate:
     t : Symbol              the time
     n : int                 the order
     shape : (rows, columns)
-    P : SeriesMatrix, x0 : the initial vector as expressions, or None for the identity matrix
+    P : SeriesMatrix
+    x0 : the initial vector as expressions, or None for the identity matrix
 
     Notes
     -----
@@ -226,6 +227,7 @@ class PicardIterate:
         return SeriesMatrix(entries, self.t).shifted(self._back())
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
+        """One entry, exact."""
         return self.series[index]
 
     def as_matrix(self) -> ImmutableMatrix:
