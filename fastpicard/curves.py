@@ -11,7 +11,7 @@ is noticed, and taken only where the two are so near that they count as one: whe
 both sides, or for a step as short.  Elsewhere the gradient neither changes sides nor more than doubles or halves.
 
 **Precision.**  Balls say what has cancelled.  The working precision grows until the radius of f, divided by its slope,
-is a shift of the zero that does not matter (:func:`resolved`).
+is a shift of the zero that does not matter (``resolved``).
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ Modes are canonical, so where no relation binds the parameters a series is zero 
 is formed with one name for every angle, for ``(b**2 - c**2)/(b + c)`` is ``b - c``; where ``cos phi`` is among the
 coefficients, phases join them, ``cos(qt + phi) = cos phi cos qt - sin phi sin qt``, and so do always the terms of a
 phase whose cosine SymPy writes as another function, ``cos(atan a) = 1/sqrt(1 + a**2)``.  These functions of time are
-independent, so that every coefficient is asked whether it is zero (:func:`fastpicard.ring.is_zero`).
+independent, so that every coefficient is asked whether it is zero (``fastpicard.ring.is_zero``).
 """
 
 from __future__ import annotations

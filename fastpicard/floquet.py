@@ -64,7 +64,10 @@ class FloquetMatrix(AsMatrix):
 
     Attributes
     ----------
-    t : Symbol;  n : int;  period : Expr;  shape : (m, m)
+    t : Symbol
+    n : int
+    period : Expr
+    shape : (m, m)
     P : SeriesMatrix
     length, turns : the period as a polynomial in its symbols, and how many least common periods of ``P`` it is
     increments, entry(i, j), collapsed, collapsed_trace : the iterate in the engine's own form, not yet SymPy

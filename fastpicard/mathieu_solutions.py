@@ -61,6 +61,12 @@ def mathieu_s(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
     """``w_II(z; a, q)``, the odd solution with slope 1 at ``z = 0``; see :func:`mathieu_c`.
 
     At ``a = mathieu_b(r, q)`` it is periodic, ``se_r(z, q) / se_r'(0, q)``.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> print(mpmath.nstr(mathieu_s(9, 0, 1, 20), 20))      # sin(3z)/3
+    0.047040002686622407367
     """
     return _solution(a, q, z, digits, 1)
 

@@ -77,6 +77,7 @@ class SeriesMatrix(AsMatrix):
         return set().union(*(free_symbols(modes) for row in self.rows for modes in row))
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
+        """One entry."""
         i, j = place(index, self.shape)
         return PoissonSeries.from_modes(self.rows[i][j], self.t)
 

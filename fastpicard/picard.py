@@ -239,6 +239,7 @@ class PicardIterate(AsMatrix):
         return SeriesMatrix(entries, self.t).shifted(self._back())
 
     def __getitem__(self, index: tuple[int, int]) -> PoissonSeries:
+        """One entry, exact."""
         return self.series[index]
 
     def as_matrix(self) -> ImmutableMatrix:

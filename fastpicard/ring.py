@@ -12,7 +12,7 @@ of distinct fractional powers of primes are linearly independent over ``Q``
 
 Two other kinds obey relations that are applied when equality is asked for.
 Cosines and sines of rational multiples of pi, and the roots among them, have a
-normal form, see :mod:`fastpicard.cosines` and :func:`normal`.  A root that is no
+normal form, see :mod:`fastpicard.cosines` and its ``normal``.  A root that is no
 square root of a rational lies in none of those fields, which are abelian, and
 (Kummer) stays independent.  Generators that are themselves sums, such as
 ``1/(b + c)``, are multiplied out.  SymPy is asked only for what then remains,

@@ -142,7 +142,8 @@ class Disc:
 
     Attributes
     ----------
-    center : acb, exact;  radius : arb, exact
+    center : acb, exact
+    radius : arb, exact
     reach : arb       the radius around the center that covers the whole cluster
     cluster : int     discs that hang together have the same number
     alone : bool      whether it is a cluster by itself: then it holds one root

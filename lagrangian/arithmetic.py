@@ -1,6 +1,6 @@
 """The number types that the recursions run on beside float64: mpmath numbers and python-flint balls.
 
-An :class:`Arithmetic` knows how to bring an exact SymPy number into its type and how to take sine and cosine;
+An ``Arithmetic`` knows how to bring an exact SymPy number into its type and how to take sine and cosine;
 everything else is ``+ - * /``.  Nothing here touches a global precision: mpmath numbers carry their context,
 and balls are computed at the precision that is current where the caller computes.
 """

@@ -79,6 +79,9 @@ def flips(chain: Any) -> dict[str, Crossing]:
     """One :class:`Crossing` a rod, ``"flip 1"`` to ``"flip n"``: it passes the upward vertical.
 
     Raises NotASceneError for anything else than a :class:`CompiledChain`.
+
+    >>> flips(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], upright=False))["flip 2"]
+    Crossing(rod=2, angle=pi, direction=0)
     """
     if not isinstance(chain, CompiledChain):
         raise NotASceneError(f"flips are those of a CompiledChain's rods, and this is {chain!r}: give "

@@ -6,7 +6,7 @@ is lost, and the sines of the joint angles, a few in a step, are those of balls 
 ``2**-105``: up to 1e-26 a step was seen, and the estimated error of the motion shows it.
 
 Pairs have the range of float64.  Where constants lie beyond ``1e-40 ... 1e40``, or a step beyond ``1e4 s``, low
-halves might underflow, and where a series overflows it has no answer: :class:`OutOfRange` then says that balls are
+halves might underflow, and where a series overflows it has no answer: ``OutOfRange`` then says that balls are
 needed.
 """
 

@@ -1,6 +1,6 @@
 r"""Taylor series of functions of time: how a prescribed motion enters the Taylor stepper.
 
-A :class:`Jet` is ``x_0 + x_1 h + ... + x_p h**p`` with coefficients of any number type.  Products are
+A ``Jet`` is ``x_0 + x_1 h + ... + x_p h**p`` with coefficients of any number type.  Products are
 convolutions, and every elementary function solves a linear differential equation, read as a recurrence:
 
     y = exp x:   k y_k = sum_(i=1..k) i x_i y_(k-i)

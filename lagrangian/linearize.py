@@ -5,7 +5,7 @@ About angles ``about`` at which the chain can stay, with ``theta`` now the devia
     A theta'' + damping theta' + stiffness(t) theta + remainder(t) = 0        ([Neves] Out[36])
     A = M(about),   stiffness = -df/dtheta,   damping = -df/dtheta',   remainder = -f,   all at rest there.
 
-The article divides by ``m l**2`` (In[36]); here that is :meth:`LinearEquations.divided`, and the undivided
+The article divides by ``m l**2`` (In[36]); here that is :meth:`lagrangian.LinearEquations.divided`, and the undivided
 matrices keep their units.  Its "equilibrium" allows a remainder from horizontal driving (Out[40]), and so does
 this file: ``about`` must balance weight, springs and vertical driving at every time.  Where it balances them together
 with the horizontal driving (a drive along the rod, ``tan theta = xi''/g`` in a cart) the chain stays, and no remainder
@@ -98,7 +98,6 @@ class LinearEquations:
     damping : Matrix, shape (N, N), symmetric, constant; N m s
     stiffness : Matrix, shape (N, N), symmetric, a function of t: the coefficient of theta; N m
     remainder : Matrix, shape (N, 1), a function of t; zero without horizontal driving; N m
-
     divisor : what the equations have been divided by; 1, or as :meth:`divided` says
 
     The units are those before :meth:`divided`.  Immutable and exact.

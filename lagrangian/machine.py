@@ -4,7 +4,7 @@ Only this file knows of numba, :mod:`lagrangian.translator`, which says what it 
 :mod:`lagrangian.pairtype`, which adds a number type to it, and :mod:`lagrangian.prefetch`, an instruction.
 
 The recursions of this package are written once, as plain functions of numbers and arrays.  Run as they are
-they take Python floats, NumPy arrays, mpmath numbers and python-flint balls; :func:`machine` translates the
+they take Python floats, NumPy arrays, mpmath numbers and python-flint balls; ``machine`` translates the
 same source for float64.  Translation happens at the first call and is kept on disk for later processes.
 
 A function and all that it calls are known to the cache under a digest of their instructions and constants,

@@ -1,7 +1,7 @@
 """What a user gives as an exact number or expression: finite, real, a scalar, and never text.
 
 A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is 3602879701896397/36028797018963968; write
-``Rational(1, 10)`` where the decimal is meant.  :func:`to_float` and :func:`high_low` lead back to floats.
+``Rational(1, 10)`` where the decimal is meant.  ``to_float`` and ``high_low`` lead back to floats.
 """
 
 from __future__ import annotations
