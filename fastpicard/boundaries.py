@@ -154,7 +154,8 @@ class Root:
     value : float or mpf      of the parameter that was sought
     error : float             a root of the true boundary is proved to lie within this; ``inf`` where it is not
     evaluations : int         how often the function was evaluated
-    slopes : {Symbol: float}  the derivative of ``value`` by each of the other parameters, along the boundary
+    slopes : {Symbol: float}  the derivative of ``value`` by each of the other parameters, along the boundary; nan at a
+        multiple root, which has none
     """
 
     value: Any
@@ -266,8 +267,9 @@ class Boundary:
         with working(dps_to_prec(wanted) + 64):
             value, count = zero(lambda here: self._dual({**exact, x: here}, (x,)), bracket, arb(10) ** -wanted)
             dual = self._dual({**exact, x: value}, (x, *(s for s in self.symbols if s != x)))
-            slopes = {s: to_number(-d / dual[1], None)
-                      for s, d in zip((s for s in self.symbols if s != x), dual[2:], strict=True)}
+            others = [s for s in self.symbols if s != x]
+            slopes = {s: float("nan") if dual[1].contains(0) else to_number(-d / dual[1], None)
+                      for s, d in zip(others, dual[2:], strict=True)}
             rounded = to_number(value, None if wanted <= 15 else wanted)
             lost = abs(value - exact_ball(rounded)) + arb(self._proved(x, exact, value, dual[1]))
             return Root(rounded, upper_float(lost.upper()) if lost.is_finite() else float("inf"), count + 1, slopes)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import hypot, isfinite
+from math import hypot, isfinite, nan
 from typing import Any
 
 from flint import arb, ctx, fmpq
@@ -67,30 +67,32 @@ def zero(function: Function, ends: tuple[Any, Any], tol: Any) -> tuple[Any, int]
     Raises
     ------
     BadInputError
-        if the signs at both ends are not proved to differ.
+        if the signs at both ends are not proved to differ, or there is a pole between them.
     """
     lo, hi = sorted(map(exact_ball, ends), key=float)
     reach = [abs(lo) + abs(hi) + tol]
     (f, df), (g, dg) = (resolved(function, [end], reach, tol / 16) for end in (lo, hi))
-    if not f * g <= 0:
+    if not f * g <= 0 or f == 0 == g:
         raise BadInputError(f"the function must change its sign between the ends {float(lo)} and {float(hi)}, but "
                             f"it is {f.str(5)} and {g.str(5)} there.  Choose ends on both sides of the boundary.")
-    rising, count = bool(g > 0), 2
+    rising, count, moved = bool(g > 0), 2, 2 * (hi - lo)
     here, value, slope = (lo, f, df) if abs(f / df) < abs(g / dg) else (hi, g, dg)
-    while count < MOST:
+    while count < MOST - 4 * float(tol.log()):
         step = value / slope if not slope.contains(0) else (hi - lo) * 2
         new = (here - step).mid()
-        if not (new > lo and new < hi):
+        if not (new > lo and new < hi and 2 * abs(step) < moved):  # Newton's steps shrink by half at least, or it halves
             new = ((lo + hi) / 2).mid()
         moved = abs(new - here)
         value, slope = resolved(function, [new], reach, tol / 16)
+        if not (value.is_finite() and slope.is_finite()):
+            raise BadInputError(f"the function must be finite between the ends {float(ends[0])} and {float(ends[1])}, "
+                                f"but it is not at {new.str(5, radius=False)}.  Choose ends on one side of a pole.")
         count, here = count + 1, new
         if value == 0 or value.contains(0) or abs(value / slope) < tol * (abs(here) + tol) and moved < 1:
             break
         lo, hi = (lo, here) if bool(value > 0) == rising else (here, hi)
-    if not slope.contains(0):
-        here = (here - value / slope).mid()
-    return here, count
+    last = (here - value / slope).mid() if not slope.contains(0) else here
+    return last if lo <= last <= hi else here, count
 
 
 def curve(function: Function, box: Box, start: Pair, step: float) -> tuple[Array, Array] | None:
@@ -181,7 +183,7 @@ class Plane:
         """The value, a ball, and the gradient."""
         place = [exact_ball(lo) + exact_ball(c) * exact_ball(w) for c, (lo, w) in zip(point, self.box, strict=True)]
         f, *slope = resolved(self.function, place, [w for _, w in self.box], 1e-14)
-        return f, [to_number(d, None) * w for d, (_, w) in zip(slope, self.box, strict=True)]
+        return f, [_float(d) * w for d, (_, w) in zip(slope, self.box, strict=True)]
 
     def onto(self, at: Sequence[float], held: int | None = None) -> Place | None:
         """The point of the curve that Newton's method along the gradient finds, and the gradient there.
@@ -192,9 +194,9 @@ class Plane:
             if not all(map(isfinite, at)):
                 return None
             value, slope = self.at(at)
-            f, free = to_number(value, None), [0.0 if k == held else d for k, d in enumerate(slope)]
+            f, free = _float(value), [0.0 if k == held else d for k, d in enumerate(slope)]
             size = hypot(*free)
-            if size == 0 or not isfinite(size):
+            if size == 0 or not isfinite(size) or not isfinite(f):
                 return None
             move = [-(f / size) * (d / size) for d in free]
             at = [c + m for c, m in zip(at, move, strict=True)]
@@ -221,6 +223,11 @@ class Plane:
         if found is None or not _inside(found[0]) or _dot(found[1], new[1]) < 0:
             return None
         return found if SHORTEST < _distance(found[0], point) <= 2 * _distance(point, outside) else None
+
+
+def _float(x: Any) -> float:
+    """nan where there is none: at a pole, or where a root is not real."""
+    return float(to_number(x, None)) if x.is_finite() else nan
 
 
 def _along(gradient: Pair, side: float = 1.0) -> Pair:

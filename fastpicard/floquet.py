@@ -408,7 +408,8 @@ class FloquetMatrix(AsMatrix):
             ``Verdict.STABLE`` (all solutions bounded for ``t >= 0``), ``Verdict.UNSTABLE`` or ``Verdict.UNDECIDED``,
             with the sentence that proves it as ``.reason``.  Undecided means that the trace, or what else is asked,
             is within some ``1e-100`` of the end of stability (in parameters that is ``1e-50`` where two boundaries
-            touch), or a box that a boundary may cross.  Where ``P`` is constant with rational entries it is never
+            touch, and ``10**(-100/k)`` where k pairs of multipliers nearly coincide), or a box that a boundary may
+            cross.  Where ``P`` is constant with rational entries it is never
             undecided.
 
         Raises

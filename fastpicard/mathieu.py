@@ -171,7 +171,7 @@ def _enclosure(matrix: Matrix, parameter: Any, digits: int) -> Any:
         guess = float_guess(matrix, about.mid())
     known = wanted + 2
     while known < 8 * wanted + 100_000:
-        bits = known - guess.exponent
+        bits = max(known - guess.exponent, 2)  # narrower than the gap to the next eigenvalue of the same matrix
         with working(known + 64):
             q = ball(parameter)
             middle = q.mid()

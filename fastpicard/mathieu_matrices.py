@@ -41,6 +41,7 @@ from fastpicard.precision import working
 
 FLOAT_BITS = 48  # that a guess in float64 has, of the largest entry
 SLOPE_BITS = 36  # and its slope
+WIDE = 30  # bits of a pivot that an interval has reached
 
 
 @dataclass(frozen=True)
@@ -118,11 +119,21 @@ class Section:
 
 def _eliminate(diagonal: list[Any], couplings: list[Any], x: Any, pivot: Any) -> list[Any]:
     """The pivots from the given one on."""
-    pivots = [pivot]
+    pivots, is_wide = [pivot], True
     for d, e in zip(diagonal, couplings):
-        pivot = d - x - e / pivot
+        is_wide = is_wide and pivot.rel_accuracy_bits() < WIDE
+        pivot = d - x - (_over_wide(e, pivot) if is_wide else e / pivot)
         pivots.append(pivot)
     return pivots
+
+
+def _over_wide(e: Any, pivot: Any) -> Any:
+    """``e / pivot`` about its value in the middle: Arb rounds a wide quotient out by more than a tail narrows it."""
+    middle, radius = pivot.mid(), pivot.rad()
+    if not radius < abs(middle):
+        return e / pivot
+    value = e / middle
+    return value + arb(0, (abs(value) * radius / (abs(middle) - radius)).upper())
 
 
 def norm(pivots: list[Any], couplings: list[Any]) -> Any:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given, settings, strategies as st
-from sympy import Matrix, Rational, cos, diff, expand, eye, sin, zeros
+from sympy import Matrix, Rational, cos, diff, expand, eye, pi, sin, sqrt, zeros
 from sympy.abc import a, b, c, h, t, v
 
 from fastpicard import BadInputError, BadTypeError, FloquetMatrix, boundaries, crossing, mathieu_a, mathieu_b
@@ -410,3 +410,50 @@ def test_hermites_second_matrices_are_congruences(sigma):
     sums = [sum(x**k for x in sigma) for k in range(1, 2 * n + 1)]
     for g, found in ((lambda x: 4 - x**2, hermite(sums, n, True)), (lambda x: x * (4 - x), hermite_from_zero(sums, n))):
         assert found == [[sum(x ** (j + k) * g(x) for x in sigma) for k in range(n)] for j in range(n)]
+
+
+def hill(S):
+    """y'' + S(t) y = 0."""
+    return Matrix([[0, 1], [-S, 0]])
+
+
+def test_a_bracket_with_a_pole_is_refused():
+    """The period is 2 pi / v, and v = 0 between the ends."""
+    F = FloquetMatrix(hill(a + cos(v * t)), t, 12, 2 * pi / v)
+    for boundary in boundaries(F)[:2]:
+        with pytest.raises(BadInputError, match="finite between the ends -1.0 and 3.0, but it is not at 0"):
+            boundary.root(v, (-1, 3), {a: Rational(1, 5)})
+
+
+def test_a_function_that_vanishes_everywhere_has_no_root():
+    """a c = 0 for c = 0: the sign does not change."""
+    with pytest.raises(BadInputError, match="must change its sign"):
+        boundaries(FloquetMatrix(hill(a * c), t, 9))[0].root(a, (-1, 1), {c: 0})
+
+
+def test_a_multiple_root_has_its_digits_but_no_slope():
+    """(a - c)**3 = 0 has the root c, thrice; that there is one of the true boundary is not proved."""
+    F = FloquetMatrix(hill((a - c) ** 3 + b * cos(t)), t, 20)
+    root = boundaries(F)[0].root(a, (Rational(1, 20), Rational(1, 5)), {b: 0, c: Rational(1, 10)})
+
+    assert abs(root.value - 0.1) < 1e-15
+    assert root.error == float("inf")
+
+
+def test_a_root_does_not_leave_its_bracket():
+    """sqrt(a) = 0 at an end, beyond which nothing is real."""
+    root = boundaries(FloquetMatrix(hill(sqrt(a)), t, 9))[0].root(a, (0, 1))
+
+    assert 0 <= root.value < 1e-20
+
+
+def test_curves_end_at_poles_and_branch_points():
+    """Not with an error of the arithmetic: at v = 0 there is no P, left of a = 0 no sqrt(a)."""
+    rod = FloquetMatrix(hill(-Rational(3, 2) / v**2 + Rational(3, 2) * h * cos(t)), t, 20)
+    with pytest.raises(BadInputError, match="followed from a point near it"):
+        boundaries(rod)[2].follow((h, 0, 1), (v, 0, 30), (0.3, 0))
+
+    boundary = boundaries(FloquetMatrix(hill(sqrt(a) - b + cos(t) / 2), t, 24))[0]
+    start = boundary.root(b, (-0.5, 1), {a: Rational(1, 10)}).value
+    points, _ = boundary.follow((a, 0, 1), (b, -1, 1), (0.1, start))
+    assert points.min(axis=0)[0] < 1e-3

@@ -453,3 +453,20 @@ def test_counts_must_be_integers(r, digits):
     """r and digits count something."""
     with pytest.raises(BadTypeError, match="must be an integer"):
         mathieu_b(r, 1, digits)
+
+
+@pytest.mark.parametrize("r, q, digits", [(0, 10**6, 1), (0, 10**9, 2), (2, -(10**12), 3), (1, 10**15, 5)])
+def test_few_digits_are_as_good_as_many(r, q, digits):
+    """The next eigenvalue is much nearer than the last of so few digits."""
+    few, many = mathieu_a_enclosure(r, q, digits), mathieu_a_enclosure(r, q, 60)
+
+    assert few.overlaps(many) and few.rel_accuracy_bits() > 3.32 * digits
+
+
+def test_very_large_q_against_the_asymptotic_series():
+    """DLMF 28.8.1 with s = 2 r + 1: -2 q + 2 s sqrt(q) - (s**2 + 1)/8 - (s**3 + 3 s)/(128 sqrt(q)) - ..."""
+    for r in (0, 3):
+        s, root = 2 * r + 1, 10**9
+        with mpmath.workdps(40):
+            series = -2 * root**2 + 2 * s * root - mpmath.mpf(s**2 + 1) / 8 - mpmath.mpf(s**3 + 3 * s) / (128 * root)
+            assert abs(mathieu_a(r, root**2, 35) - series) < mpmath.mpf(10) ** -14
