@@ -80,7 +80,7 @@ def zero(function: Function, ends: tuple[Any, Any], tol: Any) -> tuple[Any, int]
     while count < MOST - 4 * float(tol.log()):
         step = value / slope if not slope.contains(0) else (hi - lo) * 2
         new = (here - step).mid()
-        if not (new > lo and new < hi and 2 * abs(step) < moved):  # Newton's steps shrink by half at least, or it halves
+        if not (new > lo and new < hi and 2 * abs(step) < moved):  # Newton's steps halve at least, or it does
             new = ((lo + hi) / 2).mid()
         moved = abs(new - here)
         value, slope = resolved(function, [new], reach, tol / 16)
