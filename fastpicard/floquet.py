@@ -466,9 +466,9 @@ class FloquetMatrix(AsMatrix):
 
         Notes
         -----
-        Speed and accuracy: for Mathieu's trace on one core some 1.5e6 points/s at n = 20 and 4e5 at n = 50, nearly all
-        in pairs, and a third to a fifth as many matrices; a point that needs balls takes 0.1 to 1 ms.  See
-        ``benchmarks/evaluation.py``.
+        Speed and accuracy: for Mathieu's trace on one core 1.5e6 to 5e6 points/s at n = 20 and 4e5 to 1e6 at n = 50, by
+        machine, nearly all in pairs, and a third to a fifth as many matrices; a point that needs balls takes 0.1 to
+        1 ms.  See ``benchmarks/evaluation.py``.
 
         Examples
         --------
