@@ -49,7 +49,8 @@ class AsMatrix(ABC):
 class SeriesMatrix(AsMatrix):
     """A matrix whose entries are exact Poisson series in one time symbol.
 
-    Immutable; ``==`` is mathematical equality; no operation rounds.
+    Immutable; ``==`` is mathematical equality of two of them, and with a SymPy matrix that of its trees with
+    :meth:`as_matrix`; no operation rounds.
 
     Made from a SymPy Matrix or nested lists of expressions, and the time.
 

@@ -52,7 +52,8 @@ class PoissonSeries:
 
     Notes
     -----
-    Results with symbolic frequencies hold where no frequency that is divided by vanishes.
+    Results with symbolic frequencies hold where no frequency that is divided by vanishes.  An expression or a number
+    that is equal to a series has a hash of its own: ``3 in {PoissonSeries(3, t)}`` is False.
 
     Examples
     --------

@@ -229,6 +229,8 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
         results = [x.T.reshape(outer + shape)[()] for x in ((found, errors) if bound else (found,))]
         return tuple(results) if bound else results[0]
 
+    found = "values and bounds" if bound else "values"
+    function.__doc__ = f"({', '.join(map(str, names))}) -> {found}, shape ({', '.join(['...', *map(str, shape)])})."
     return function
 
 
