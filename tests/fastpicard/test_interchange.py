@@ -214,6 +214,14 @@ def test_the_reason_shows_what_it_claims():
     assert (undecided, "differs from 2 by [+/- " in undecided.reason) == (Verdict.UNDECIDED, True)
 
 
+@pytest.mark.parametrize("frequency, period", [(0.1, 20 * pi), (2 * np.pi, 1)])
+def test_floats_that_are_no_frequency_are_seen_through(frequency, period):
+    """Their binary fractions repeat after no period that anyone means."""
+    with pytest.raises(FastPicardError, match=r"Rational\(1, 10\), or sympy\.pi"):
+        FloquetMatrix(P.subs(t, frequency * t), t, 3, period)
+    assert FloquetMatrix(P.subs(t, 0.5 * t), t, 3, 4 * pi).n == 3
+
+
 def test_messages_speak_of_what_was_given():
     """The digits asked for, not those of an intermediate step; the values, not those put in."""
     with pytest.raises(BadInputError, match="15 were asked for"):
