@@ -18,7 +18,6 @@ from fastpicard.reading import as_finite, as_polynomial, read_constant
 from fastpicard.ring import ONE, Polynomial, generator, multiply, normal, rational_value, reciprocal, to_expression
 from fastpicard.writing import write
 
-
 FLOAT = 2**30  # a denominator that is a power of two and as large has come from a float
 
 
@@ -75,7 +74,8 @@ def whole_turns(frequency: algebra.Linear, length: Polynomial) -> int | None:
 def _remedy(matrix: SeriesMatrix) -> str:
     """The common period: all frequencies as rational multiples of one of them."""
     frequencies = sorted({angle[0] for row in matrix.rows for modes in row for _, angle, _ in modes if angle[0]})
-    if any(int(c.q) >= FLOAT and int(c.q).bit_count() == 1 for q in frequencies for _, c in q):
+    denominators = [int(c.q) for q in frequencies for c in algebra.as_polynomial(q).values()]
+    if any(d >= FLOAT and d.bit_count() == 1 for d in denominators):
         return "A frequency looks like a float, which stands for a binary fraction: write Rational(1, 10), or sympy.pi."
     one = algebra.as_polynomial(frequencies[0])
     ratios = [rational_value(multiply(algebra.as_polynomial(q), reciprocal(one))) for q in frequencies]
