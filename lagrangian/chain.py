@@ -174,7 +174,7 @@ class CompiledChain(Links):
     @cached_property
     def _single(self) -> tuple[Any, Any]:
         """The machine code for one chain, None without numba, and the constants that it takes."""
-        constants = self.bobs if self.model == "bobs" else self.rods
+        constants = self._bobs if self.model == "bobs" else self._rods
         return machine(MODELS[self.model]) if has_numba() else None, constants
 
     @cached_property
@@ -190,7 +190,7 @@ class CompiledChain(Links):
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
         tau = self.torques(theta, omega) if self.has_torques else None
         if has_numba() and theta.ndim == 2:
-            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, self._counterweighted, out)
+            found = accelerate_together(self._rods, theta, omega, tau, ax, ay, self._counterweighted, out)
             if found[0]:
                 return found
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)

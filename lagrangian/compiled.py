@@ -24,6 +24,7 @@ from .chain import CompiledChain
 from .constants import substitution
 from .equations import EquationsOfMotion
 from .errors import DriveError, NotASceneError, QuantityError, SceneError
+from .frozen import Frozen
 from .machine import has_numba
 from .states import float_state, float_time
 
@@ -32,12 +33,12 @@ __all__ = ["CompiledEquations", "compile_equations"]
 TARGETS = ("numpy", "mpmath", "numba")
 
 
-class CompiledEquations:
-    """``acceleration(t, theta, omega)`` from the symbolic M and f; made by :func:`compile_equations`.
+class CompiledEquations(Frozen):
+    """``acceleration(t, theta, omega)`` from the symbolic M and f; made by :func:`compile_equations`.  Immutable.
 
     Attributes
     ----------
-    equations : the :class:`EquationsOfMotion`, with numbers for their Symbols
+    equations : the :class:`EquationsOfMotion` that it was made from, Symbols and all
     target : ``"numpy"``, ``"mpmath"`` or ``"numba"``
     chain : the same chain as a :class:`CompiledChain`
     """
@@ -66,6 +67,7 @@ class CompiledEquations:
                                 f"in "
                                 f"compile_equations(equations, {{symbol: number}}).")
         self._function = self._translated([self._time, *names], sides)
+        self._made = True
 
     def _translated(self, arguments: list[Any], sides: list[Any]) -> Any:
         modules = "mpmath" if self.target == "mpmath" else "numpy"

@@ -19,6 +19,7 @@ from sympy.core.relational import Relational
 
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
+from .frozen import locked
 from .quantities import quantity, real_number, refuse_mask, refuse_text, to_float
 
 __all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
@@ -56,9 +57,7 @@ def to_floats(values: Any) -> Any:
     """Numbers as float64, shape (n,), read only; None stays None."""
     if values is None:
         return None
-    found = np.array([to_float(x) for x in values])
-    found.flags.writeable = False
-    return found
+    return locked(np.array([to_float(x) for x in values]))
 
 
 def column(values: Any, name: str) -> Any:

@@ -87,7 +87,8 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     keeps every step's series.  Raises DriveError where the support has no Taylor series, QuantityError where steps
     shrink to nothing.
     """
-    n = len(chain)
+    n, moved = len(chain), rods is not None
+    rods = rods if moved else chain.rods.copy()  # machine code would be translated again for what is read only
     marks = np.ascontiguousarray(split(times, False)[:2].T)
     state, clock = np.zeros((5, n)), marks[0].copy()
     state[:3], state[3:] = split(theta, True), split(omega, False)[:2]
@@ -97,11 +98,11 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     most = min(most, 4096) if keep else most
     found, steps, space, pace = 0, 0, room(n, order), Pace()
     while True:
-        pull, waves = _shaking(chain, clock, order, rods is not None)
+        pull, waves = _shaking(chain, clock, order, moved)
         if keep:
             record = np.empty((most, 2 + n * (order + 4)))
         outcome, made, found = machine(advance)(
-            chain.rods if rods is None else rods, chain.damping, chain.springs, pull, waves, tolerance, state,
+            rods, chain.damping, chain.springs, pull, waves, tolerance, state,
             clock, marks, found, out, most, record, space)
         steps += made
         if keep:

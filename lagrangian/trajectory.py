@@ -11,10 +11,11 @@ from sympy import Float, latex
 
 from .animation import animate
 from .errors import QuantityError
+from .frozen import locked
 from .optional import optional
 from .plotting import plot
 
-__all__ = ["Trajectory", "labelled", "locked"]
+__all__ = ["Trajectory", "labelled"]
 
 ARRAYS = ("times", "theta", "omega", "turns", "wrapped", "energy", "error")
 
@@ -162,10 +163,3 @@ def labelled(motion: Any, members: Sequence[Trajectory], axes: tuple[str, ...]) 
     notes = {"method": "; ".join(sorted({one.method for one in members})), "accuracy": members[0].accuracy,
              "verdict": motion.verdict, "model": "; ".join(sorted({one.chain.model for one in members}))}
     return xarray.Dataset(variables, {axis: places[axis] for axis in axes}, notes)
-
-
-def locked(array: Any) -> Any:
-    """The same array, read only."""
-    found = np.asarray(array).view()
-    found.flags.writeable = False
-    return found
