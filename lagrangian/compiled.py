@@ -50,7 +50,7 @@ class CompiledEquations(Frozen):
             raise QuantityError(f"equations are compiled for one chain, and these values are for {len(chain)}: give "
                                 f"one number for every Symbol, or use scene.compile(values).")
         self.chain, self._values = chain, dict(values or {})
-        n, replace = len(equations.scene), substitution(values)
+        n, replace = len(equations.scene), substitution(values, equations.t)
         self._time = Dummy("t")
         rates, angles = ([Symbol(f"{letter}{k}") for k in range(n)] for letter in ("w", "q"))
         plain = dict(zip(equations.scene.velocities, rates, strict=True)), dict(zip(equations.scene.coordinates, angles,
@@ -148,7 +148,7 @@ def compile_equations(equations: EquationsOfMotion, values: Mapping[Any, Any] | 
     precision) or ``"numba"`` (NumPy where numba is not installed).  What the scene has not, drive, dampers, springs,
     is not in the code.
 
-    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number, SceneError for an
+    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number or the time has one, SceneError for an
     unknown target, TextError for text.
 
     >>> from sympy import symbols

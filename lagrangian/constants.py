@@ -158,8 +158,11 @@ def check_joints(mass: Any, joints: list[Any]) -> None:
                                  f"it a mass, or free its joints.")
 
 
-def substitution(values: Mapping[Any, Any] | None) -> Callable[[Any], Any]:
-    """``expression -> expression`` with numbers for Symbols; raises as :func:`quantity`, and NotAQuantityError."""
+def substitution(values: Mapping[Any, Any] | None, t: Any) -> Callable[[Any], Any]:
+    """``expression -> expression`` with numbers for Symbols, of which the time ``t`` is none.
+
+    Raises as :func:`quantity`, and NotAQuantityError.
+    """
     refuse_text(values, "values")
     if values is not None and not isinstance(values, Mapping):
         raise NotAQuantityError(f"values is {values!r}: give a mapping of Symbols to numbers, as in {{m: 1, l: 2}}.")
@@ -168,6 +171,9 @@ def substitution(values: Mapping[Any, Any] | None) -> Callable[[Any], Any]:
         refuse_text(symbol, "a key of values")
         if not isinstance(symbol, Symbol):
             raise NotAQuantityError(f"values maps {symbol!r}, which is not a Symbol, to {value!r}: give Symbols.")
+        if symbol == t:
+            raise QuantityError(f"the time {t} is no parameter, and values gives it the value {value!r}, which would "
+                                f"stop the support: leave {t} out, and give it to acceleration(t, theta, omega).")
         numbers[symbol] = quantity(value, f"the value of {symbol}")
     return lambda expression: expression.xreplace(numbers)
 

@@ -56,6 +56,7 @@ from .quantities import quantity, refuse_text
 
 __all__ = ["Arrangement", "Rod", "Support"]
 
+_TIMES = ("t", "tau", "time")  # Symbols that are called so are meant as the time, where a motion holds no other
 _ROUGH = (Abs, Heaviside, DiracDelta, Max, Min, Mod, Piecewise, ceiling, floor, frac, sign, re, im, arg, conjugate)
 
 
@@ -350,6 +351,12 @@ def _check_drive(scene: Arrangement) -> None:
             raise DriveError(
                 f"the drive is prescribed, and {name} = {value} depends on the coordinate {clash[0]}: give {name} as "
                 f"a function of {scene.t} alone, or give the parameter another name."
+            )
+        meant = [] if scene.t in value.free_symbols else [x for x in value.free_symbols if x.name in _TIMES]
+        if meant:
+            raise DriveError(
+                f"the time is {scene.t}, and {name} = {value} holds the Symbol {meant[0]} instead, so that it would not "
+                f"move: write xi and eta in one Symbol of time and pass it, as in Scene(..., t={meant[0]})."
             )
         rough = [x for x in value.atoms(*_ROUGH) if scene.t in x.free_symbols]
         if rough:

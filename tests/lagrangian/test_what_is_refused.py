@@ -85,6 +85,9 @@ def linear(rods=(rod,), support=driven, **options):
     (lambda: Scene([rod], Support(eta=Heaviside(t))), DriveError, "twice"),
     (lambda: Scene([rod], Support(eta=cos(t)), t=Symbol("t", real=True)), DriveError, "assumptions"),
     (lambda: Scene([rod], Support(eta=l * cos(omega0))), DriveError, "which is the time"),
+    (lambda: Scene([rod], driven, t=Symbol("tau")), DriveError, "pass it, as in Scene(..., t=t)"),
+    (lambda: Scene([rod], Support(eta=cos(Symbol("tau"))), t=t), DriveError, "the time is t"),
+    (lambda: Scene([rod], Support(cos(Symbol("tau")), cos(t))), DriveError, "xi = cos(tau)"),
     (lambda: Support(eta=I), QuantityError, "real"),
     (lambda: Support(eta=nan), QuantityError, "finite"),
     (lambda: euler_lagrange(rod), NotASceneError, "Scene"),
@@ -139,6 +142,15 @@ def test_text_is_never_evaluated(ask):
     """TextError wherever mathematics is expected."""
     with pytest.raises(TextError, match="never evaluated"):
         ask()
+
+
+def test_a_support_may_stay_at_a_height_without_a_number():
+    """Nor is a parameter taken for the time that stands beside the time."""
+    tau = Symbol("tau")
+    still = linear(support=Support(l, epsilon), t=tau)
+
+    assert still.stiffness == linear(support=Support()).stiffness
+    assert Scene([rod], Support(eta=cos(t / tau))).support_acceleration[1] == -cos(t / tau) / tau**2
 
 
 def test_numbers_of_every_kind_are_exact():
@@ -204,6 +216,10 @@ def test_numbers_of_flint_are_numbers():
     (lambda chain: chain.acceleration(0, np.array([1, 2], dtype="m8[s]"), [0, 0]), "unit of time"),
     (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], progress=3), "progress is 3"),
     (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], digits=10**9), "at most 100000"),
+    (lambda chain: Scene([rod], driven).compile({m: 1, l: 1, g: 10, epsilon: 0.1, omega0: 3, t: 1}),
+     "time t is no parameter.*value 1"),
+    (lambda chain: compile_equations(euler_lagrange(Scene([rod], driven)), {t: 0.5}), "time t is no parameter"),
+    (lambda chain: Scene([rod], driven).compile({m: [1, 2], l: 1, t: [0, 1]}), "time t is no parameter"),
     (lambda chain: drum().acceleration(0.5, [1], [0]), "besselj.*target='mpmath'"),
     (lambda chain: compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)] * 2, gravity=10))).acceleration(
         0, [1, 1], [1e200, 0]), "beyond float64"),
