@@ -148,8 +148,8 @@ def compile_equations(equations: EquationsOfMotion, values: Mapping[Any, Any] | 
     precision) or ``"numba"`` (NumPy where numba is not installed).  What the scene has not, drive, dampers, springs,
     is not in the code.
 
-    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number or the time has one, SceneError for an
-    unknown target, TextError for text.
+    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number or the time has one,
+    SceneError for an unknown target, TextError for text.
 
     >>> from sympy import symbols
     >>> from lagrangian import Rod, Scene, euler_lagrange

@@ -20,7 +20,7 @@ from sympy.core.relational import Relational
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .frozen import locked
-from .quantities import quantity, real_number, refuse_mask, refuse_text, to_float
+from .quantities import namesakes, quantity, real_number, refuse_mask, refuse_text, to_float
 
 __all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
            "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
@@ -175,7 +175,14 @@ def substitution(values: Mapping[Any, Any] | None, t: Any) -> Callable[[Any], An
             raise QuantityError(f"the time {t} is no parameter, and values gives it the value {value!r}, which would "
                                 f"stop the support: leave {t} out, and give it to acceleration(t, theta, omega).")
         numbers[symbol] = quantity(value, f"the value of {symbol}")
-    return lambda expression: expression.xreplace(numbers)
+
+    def replaced(expression: Any) -> Any:
+        found = expression.xreplace(numbers)
+        why = namesakes(numbers.keys(), found.free_symbols)
+        if why:
+            raise QuantityError(f"{expression} is left without a number: {why}")
+        return found
+    return replaced
 
 
 def one_by_one(values: Mapping[Any, Any] | None) -> list[Mapping[Any, Any]]:

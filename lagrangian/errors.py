@@ -53,7 +53,7 @@ class DriveError(LagrangianError, ValueError):
 
 
 class NameClashError(LagrangianError, ValueError):
-    """A Symbol of the scene has the name of one that the result needs for something else."""
+    """A Symbol of the scene has the name of another one, that is given or that the result needs."""
 
 
 class NotAnEquilibriumError(LagrangianError, ValueError):

@@ -172,7 +172,7 @@ class LinearEquations:
         NotPeriodicError
             The driving is not a sum of cosines and sines of rational multiples of omega0 t.
         NameClashError
-            The scene uses a Symbol called tau, h or v for something else.
+            The scene uses a Symbol called tau, h or v for something else, or one called like omega0 that is another.
         QuantityError, NotAQuantityError, TextError
             omega0 is zero, depends on time, or is not a number or expression.
 
@@ -187,7 +187,7 @@ class LinearEquations:
         >>> P[1, 0], period
         (-3*h*cos(tau)/2 + 3/(2*v**2), 2*pi)
         """
-        omega0 = frequency(omega0, self.t)
+        omega0 = frequency(omega0, self.scene)
         if any(expand(entry) != 0 for entry in self.remainder):
             raise InhomogeneousError(
                 f"x' = P x has no place for a remainder, and this one is {_short(self.remainder)} (from the "

@@ -98,7 +98,7 @@ class NormalModes:
         >>> normal_modes(linearize(euler_lagrange(scene))).mathieu(omega0)
         ((-3/(2*v**2), 3*h/2),)
         """
-        omega0 = frequency(omega0, self.scene.t)
+        omega0 = frequency(omega0, self.scene)
         found = {(q, k): part for q, pair in modes_of(self.time_factor, self.scene.t, omega0).items()
                  for k, part in enumerate(pair) if expand(part) != 0}
         other = [(q, "cos" if k == 0 else "sin") for q, k in found if (q, k) not in ((0, 0), (1, 0))]

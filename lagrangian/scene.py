@@ -355,8 +355,8 @@ def _check_drive(scene: Arrangement) -> None:
         meant = [] if scene.t in value.free_symbols else [x for x in value.free_symbols if x.name in _TIMES]
         if meant:
             raise DriveError(
-                f"the time is {scene.t}, and {name} = {value} holds the Symbol {meant[0]} instead, so that it would not "
-                f"move: write xi and eta in one Symbol of time and pass it, as in Scene(..., t={meant[0]})."
+                f"the time is {scene.t}, and {name} = {value} holds the Symbol {meant[0]} instead, so that it would "
+                f"not move: write xi and eta in one Symbol of time and pass it, as in Scene(..., t={meant[0]})."
             )
         rough = [x for x in value.atoms(*_ROUGH) if scene.t in x.free_symbols]
         if rough:
