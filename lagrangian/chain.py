@@ -82,8 +82,9 @@ class CompiledChain(Links):
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` at time t; rad/s**2.
 
-        Shapes: theta and omega (n,), or (n, chains) for many chains with the same rods; the result likewise.  The
-        arithmetic is that of the numbers given: float64; mpmath numbers, at the precision of their context;
+        Shapes: theta and omega (n,), or (n, chains) for many chains with the same rods; the result likewise.  (It is
+        (chains, n) for :class:`lagrangian.Ensemble` and :func:`lagrangian.simulate`: where there are as many chains as
+        rods, nothing tells one from the other.)  The arithmetic is that of the numbers given: float64; mpmath numbers, at the precision of their context;
         python-flint balls, at flint's current precision, and then the result contains the true one for all states
         and times in the balls.
 

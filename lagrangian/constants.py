@@ -20,7 +20,7 @@ from sympy.core.relational import Relational
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError
 from .frozen import locked
-from .quantities import namesakes, quantity, real_number, refuse_mask, refuse_text, to_float
+from .quantities import namesakes, quantity, real_number, refuse_mask, refuse_text, refuse_unordered, to_float
 
 __all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
            "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
@@ -64,6 +64,7 @@ def column(values: Any, name: str) -> Any:
     """float64 where that is what was given, else exact SymPy numbers as an object array."""
     refuse_text(values, name)
     refuse_mask(values, name)
+    refuse_unordered(values, name)
     if getattr(values, "ndim", 1) > 1:
         raise SceneError(f"{name} has shape {values.shape}, and the rods of a CompiledChain are given by n numbers: "
                          f"give Ensemble(mass, length, center, gyration) for many chains, each with its own rods.")

@@ -124,6 +124,7 @@ class Ensemble(Frozen):
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` at time t, shape (chains, n) as theta and omega have; rad/s**2.
 
+        (For many chains with the same rods :meth:`lagrangian.CompiledChain.acceleration` takes (n, chains).)
         The arithmetic is that of the numbers given, as for :meth:`lagrangian.CompiledChain.acceleration`; mpmath
         numbers and balls take one chain after the other.
 

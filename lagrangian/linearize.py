@@ -52,7 +52,7 @@ from .errors import (
     SceneError,
 )
 from .inverse import inverse
-from .quantities import quantity, refuse_text
+from .quantities import quantity, refuse_text, refuse_unordered
 from .scene import column
 
 __all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
@@ -277,6 +277,7 @@ def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
     if about is None:
         return (Integer(0),) * len(scene)
     refuse_text(about, "about")
+    refuse_unordered(about, "about")
     if not isinstance(about, Iterable):
         raise NotAQuantityError(f"about is {about!r}: give a list of {len(scene)} angles.")
     angles = tuple(quantity(angle, f"about[{i}]") for i, angle in enumerate(about))

@@ -7,7 +7,7 @@ A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is 3602879701896397
 from __future__ import annotations
 
 import math
-from collections.abc import Set
+from collections.abc import Mapping, Set
 from decimal import Decimal
 from numbers import Integral, Rational as AnyRational, Real
 from typing import Any
@@ -19,7 +19,8 @@ from sympy import Catalan, E, EulerGamma, Expr, Float, GoldenRatio, I, Integer, 
 
 from .errors import NotAQuantityError, QuantityError, TextError
 
-__all__ = ["AnyMpf", "high_low", "namesakes", "quantity", "real_number", "refuse_mask", "refuse_text", "to_float"]
+__all__ = ["AnyMpf", "high_low", "namesakes", "quantity", "real_number", "refuse_mask", "refuse_text",
+           "refuse_unordered", "to_float"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
 _NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
@@ -35,6 +36,13 @@ def refuse_text(value: Any, name: str) -> None:
             f"{name} is the text {value!r}, and text is never evaluated: give a number, or a SymPy expression "
             f"such as Symbol('m') or Rational(1, 2)."
         )
+
+
+def refuse_unordered(values: Any, name: str) -> None:
+    """Raise :class:`NotAQuantityError` for a mapping, read as its keys otherwise, and for a set, in any order."""
+    if isinstance(values, (Mapping, Set)):
+        raise NotAQuantityError(f"{name} is {values!r}, a {type(values).__name__}, and what is in one has no order here:"
+                                f" give a list.")
 
 
 def refuse_mask(values: Any, name: str) -> None:

@@ -52,7 +52,7 @@ from sympy import (
 from sympy.core.function import AppliedUndef
 
 from .errors import DriveError, NotAQuantityError, QuantityError, SceneError
-from .quantities import quantity, refuse_text
+from .quantities import quantity, refuse_text, refuse_unordered
 
 __all__ = ["Arrangement", "Rod", "Support"]
 
@@ -269,6 +269,7 @@ class Arrangement:
 
 def _rods(rods: Any) -> tuple[Rod, ...]:
     refuse_text(rods, "rods")
+    refuse_unordered(rods, "rods")
     if isinstance(rods, (int, Rod)) or not isinstance(rods, Iterable):
         raise SceneError(
             f"rods is {rods!r}: the number N of rods is positive and is the length of a list, so give N rods, "
@@ -291,6 +292,7 @@ def _one_a_joint(values: Any, name: str, count: int) -> tuple[Any, ...] | None:
     if values is None:
         return None
     refuse_text(values, name)
+    refuse_unordered(values, name)
     if not isinstance(values, Iterable):
         raise NotAQuantityError(f"{name} is {values!r}: give a list with one value for each of the {count} joints.")
     joints = tuple(quantity(value, f"{name}[{i}]") for i, value in enumerate(values))

@@ -30,7 +30,7 @@ from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
 from .frozen import locked
 from .jets import FUNCTIONS, Jet, evaluate
-from .quantities import high_low, real_number, refuse_text, to_float
+from .quantities import high_low, real_number, refuse_text, refuse_unordered, to_float
 from .waves import NoWave, waves_of
 
 __all__ = ["Shaking", "shaking_of", "shaking_of_expressions"]
@@ -197,6 +197,7 @@ def _shown(t: Any) -> str:
 def shaking_of(given: Any) -> Shaking:
     """A pair of numbers, or a function of t that gives one.  Raises TextError, DriveError."""
     refuse_text(given, "support_acceleration")
+    refuse_unordered(given, "support_acceleration")
     if isinstance(given, Shaking):
         return given
     if callable(given):

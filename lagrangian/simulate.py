@@ -32,7 +32,7 @@ from .equations import EquationsOfMotion
 from .errors import DriveError, NotAQuantityError, NotASceneError, QuantityError, SceneError
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
 from .pieces import BallPieces, FloatPieces
-from .quantities import quantity, refuse_mask, refuse_text
+from .quantities import quantity, refuse_mask, refuse_text, refuse_unordered
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .swings import swing
 from .trajectories import Trajectories, chains_and_states
@@ -54,7 +54,8 @@ def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEqua
     """The motion from ``theta0, omega0`` at ``times[0]``, at all ``times``, as a :class:`Trajectory`.
 
     Many at once are followed one after the other, and given as :class:`Trajectories`: those of an :class:`Ensemble`, or
-    of one chain from many states, shape (chains, n).
+    of one chain from many states, shape (chains, n).  (:meth:`CompiledChain.acceleration` takes (n, chains): where there
+    are as many chains as rods, nothing tells one from the other.)
 
     Parameters
     ----------
@@ -328,6 +329,7 @@ def _plain_times(times: Any) -> Any:
 def _quantities(values: Any, name: str, wanted: str) -> list[Any]:
     """Exact numbers from any sequence of numbers; raises SceneError, saying what is wanted, where it is none."""
     refuse_text(values, name)
+    refuse_unordered(values, name)
     try:
         entries = list(values)
     except TypeError:

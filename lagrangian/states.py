@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from .errors import SceneError
-from .quantities import real_number, refuse_mask, refuse_text, to_float
+from .quantities import real_number, refuse_mask, refuse_text, refuse_unordered, to_float
 
 __all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "shown",
            "why_no_answer"]
@@ -37,6 +37,7 @@ def floats(values: Any, name: str) -> Any:
         return values
     refuse_text(values, name)
     refuse_mask(values, name)
+    refuse_unordered(values, name)
     try:
         array = np.asarray(values)
     except ValueError:  # rows of unequal length

@@ -204,6 +204,25 @@ def test_masks_are_not_lost(ask):
         ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
 
 
+@pytest.mark.parametrize("ask", [
+    lambda chain: simulate(chain, {5: 1, 7: 2}, [0, 0], [0, 1]),
+    lambda chain: simulate(chain, [1, 1], {5, 7}, [0, 1]),
+    lambda chain: simulate(chain, [1, 1], [0, 0], {0: 0, 1: 1}),
+    lambda chain: chain.acceleration(0, {5: 1, 7: 2}, [0, 0]),
+    lambda chain: CompiledChain({1: 5, 2: 3}, [1, 1], [1, 1], [1, 1]),
+    lambda chain: CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], support_acceleration={1, 2}),
+    lambda chain: CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], springs={1, 2}),
+    lambda chain: Ensemble({1: 5, 2: 3}, 1, 1, 1),
+    lambda chain: Scene({rod: 1}),
+    lambda chain: Scene([rod], damping={0: 1}),
+    lambda chain: linearize(euler_lagrange(Scene([rod] * 2)), about={0, pi}),
+])
+def test_neither_the_keys_of_a_mapping_nor_a_set_are_a_list(ask):
+    """Angles given by name, ``{theta1: 0}``, would be the names; sets have no first and last."""
+    with pytest.raises(NotAQuantityError, match="no order here"):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
 def test_numbers_of_flint_are_numbers():
     """Rationals and integers, as lengths and as angles."""
     third = flint.fmpq(1, 3)
