@@ -84,9 +84,9 @@ class CompiledChain(Links):
 
         Shapes: theta and omega (n,), or (n, chains) for many chains with the same rods; the result likewise.  (It is
         (chains, n) for :class:`lagrangian.Ensemble` and :func:`lagrangian.simulate`: where there are as many chains as
-        rods, nothing tells one from the other.)  The arithmetic is that of the numbers given: float64; mpmath numbers, at the precision of their context;
-        python-flint balls, at flint's current precision, and then the result contains the true one for all states
-        and times in the balls.
+        rods, nothing tells one from the other.)  The arithmetic is that of the numbers given: float64; mpmath numbers,
+        at the precision of their context; python-flint balls, at flint's current precision, and then the result
+        contains the true one for all states and times in the balls.
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """

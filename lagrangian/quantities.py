@@ -41,8 +41,8 @@ def refuse_text(value: Any, name: str) -> None:
 def refuse_unordered(values: Any, name: str) -> None:
     """Raise :class:`NotAQuantityError` for a mapping, read as its keys otherwise, and for a set, in any order."""
     if isinstance(values, (Mapping, Set)):
-        raise NotAQuantityError(f"{name} is {values!r}, a {type(values).__name__}, and what is in one has no order here:"
-                                f" give a list.")
+        raise NotAQuantityError(f"{name} is {values!r}, a {type(values).__name__}, and what is in one has no order "
+                                f"here: give a list.")
 
 
 def refuse_mask(values: Any, name: str) -> None:
