@@ -145,9 +145,10 @@ def fresh_symbol(name: str, scene: Scene, omega0: Any, replaced: Mapping[Any, An
     """
     gone = {old for old, meaning in (replaced or {}).items() if old == meaning} | {scene.t}
     if any(x.name == name for x in (scene.free_symbols | omega0.free_symbols) - gone):
+        spared = "" if name == "tau" else ", or pass dimensionless=False, which needs no h and v"
         raise NameClashError(
-            f"the result needs a Symbol called {name}, and the scene has one of its own: rename the scene's {name}, "
-            f"or pass dimensionless=False, which needs no h and v."
+            f"the result needs a Symbol called {name}, and the scene has one of its own: rename the scene's "
+            f"{name}{spared}."
         )
     return Symbol(name)
 

@@ -339,9 +339,12 @@ def _named_like_coordinates(expression: Any, count: int) -> list[str]:
 def _check_constants(scene: Arrangement) -> None:
     for name, value in scene.constants:
         clash = _named_like_coordinates(value, len(scene))
-        if scene.t in value.free_symbols or clash:
+        if clash:
+            raise QuantityError(f"{name} is constant, and {value} holds {clash[0]}, the name of a coordinate: give the "
+                                f"parameter another name.")
+        if scene.t in value.free_symbols:
             raise QuantityError(
-                f"{name} is constant, and {value} depends on {clash[0] if clash else scene.t}: give a constant.  "
+                f"{name} is constant, and {value} depends on {scene.t}: give a constant.  "
                 f"(A gravity g + a(t) is a support with eta'' = a(t).)"
             )
 

@@ -99,7 +99,8 @@ class Trajectory:
         if self.accurate:
             return f"Every angle is within about {worst:.1e} rad of the true motion; {self.accuracy:.1e} was asked for."
         remedy = ("Ask for more digits, as in simulate(..., digits=40), to see further."
-                  if self.method.startswith("taylor") else "Choose method='taylor', with digits=40 to see further.")
+                  if self.method.startswith("taylor")
+                  else "Choose method='taylor', and digits=40 with it where that is not enough.")
         return (f"From t = {float(self.predictable_until):.6g} on the accuracy asked for, {self.accuracy:.1e} rad, is "
                 f"lost: errors grow to {worst:.1e} rad.  {remedy}")
 
