@@ -52,6 +52,13 @@ class CompiledChain(Links):
     upright : whether angles are from the upward vertical (the article) or the downward one (the notes)
     model : None, ``"bobs"`` or ``"rods"``; None takes the least that will do, and ``chain.model`` says which
 
+    Attributes
+    ----------
+    gravity : g as the exact SymPy number it was given as; ``float(chain.gravity)`` is a float again; m/s**2
+    upright, model : as above, ``"bobs"`` or ``"rods"``; ``len(chain)`` is n
+    rods : shape (n, 8), float64: mass, length and moments of every rod, see :attr:`rods`; kg, m, kg m**2, kg m
+    damping, springs : shape (n,), float64, or None; N m s, N m
+
     Floats are taken as the exact numbers they are, SymPy numbers and fractions too.  Accelerations in float64 round:
     within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart.  Where float64 leaves that in doubt, at one
     ordinary state in 750 and at one in nineteen of such chains, the same recursion runs again with 31 digits or more.

@@ -62,6 +62,8 @@ __all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
 class FirstOrderSystem:
     """``dx/dtau = P(tau) x`` with ``x = (theta, dtheta/dtau)``; unpacks as ``P, tau, period``.  Immutable, exact.
 
+    Made by :meth:`LinearEquations.first_order`.
+
     Attributes
     ----------
     P : Matrix, shape (2N, 2N), a trigonometric polynomial in tau; dimensionless
@@ -89,6 +91,8 @@ class FirstOrderSystem:
 @dataclass(frozen=True, repr=False)
 class LinearEquations:
     """``A theta'' + damping theta' + stiffness theta + remainder = 0``, theta the deviation from ``about``.
+
+    Made by :func:`linearize`.
 
     Attributes
     ----------

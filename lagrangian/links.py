@@ -134,14 +134,14 @@ class Links(Frozen):
         return [rod_row(m if m != 0 else light, l, H, R**2) for m, l, H, R in zip(*columns, strict=True)]
 
     def rods_in(self, arithmetic: Arithmetic) -> Any:
-        """:attr:`rods` in another arithmetic, from the exact numbers; shape (n, 8)."""
+        """:attr:`rods` in an arithmetic of :mod:`lagrangian.arithmetic`, from the exact numbers; shape (n, 8)."""
         out = np.empty((len(self), 8), dtype=object)
         for k, row in enumerate(self._exact_rods(Rational(1, 10**400))):
             out[k] = [arithmetic.number(x) for x in row]
         return out
 
     def joints_in(self, arithmetic: Arithmetic) -> list[Any]:
-        """Damping and springs, each None or shape (n,)."""
+        """Damping and springs in an arithmetic of :mod:`lagrangian.arithmetic`, each None or shape (n,)."""
         return [None if values is None else arithmetic.array(arithmetic.number(quantity(x, "joint")) for x in values)
                 for values in self._joints]
 
@@ -204,7 +204,7 @@ class Links(Frozen):
     def energy_of(self, angle: Any, omega: Any, turns: Any = None) -> Any:
         """:meth:`energy` of angles, rates and, where given, whole turns of the angles, shapes (n,) or (n, any); J.
 
-        Springs count the turns; sines of the rest lose nothing.
+        Springs count the turns; sines of the rest lose nothing.  Of float64 arrays, which are not checked.
         """
         shape = (-1,) + (1,) * (angle.ndim - 1)
         m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)

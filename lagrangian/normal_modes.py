@@ -52,6 +52,8 @@ _DIGITS = 30
 class NormalModes:
     """``psi_i'' + mu_i s(t) psi_i = 0`` with ``theta = U psi``.  Immutable.
 
+    Made by :func:`normal_modes`.
+
     Attributes
     ----------
     mu : tuple of N, ascending where they are numbers; without unit for equal rods, else 1/m (1/s**2 where s is 1)
@@ -61,7 +63,8 @@ class NormalModes:
     digits : None where mu is exact; else the number of correct digits of mu
 
     ``mu`` and ``U`` are exact for N <= 2.  For N > 2, ``mu`` is exact where A and B are rational (up to a common
-    factor), and the entries of ``U`` are numbers of 30 digits, or of ``digits``.
+    factor), and the entries of ``U`` are numbers of 30 digits, or of ``digits``: SymPy Floats of that precision, since
+    Matrices and symbols stand beside them.
     """
 
     scene: Scene
