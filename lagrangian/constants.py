@@ -18,7 +18,7 @@ from sympy import Symbol
 from sympy.core.relational import Relational
 
 from .angles import product
-from .errors import NotAQuantityError, QuantityError, SceneError
+from .errors import NotAQuantityError, QuantityError, SceneError, printed
 from .frozen import locked
 from .quantities import namesakes, quantity, real_number, refuse_mask, refuse_text, refuse_unordered, to_float
 
@@ -74,7 +74,7 @@ def column(values: Any, name: str) -> Any:
             raise QuantityError(f"{name} holds {bad}, which is not finite: give finite numbers.")
         return values.astype(np.float64)
     if isinstance(values, (int, float)) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) == 0:
-        raise NotAQuantityError(f"{name} is {values!r}: give a list with one {name} for each rod.")
+        raise NotAQuantityError(f"{name} is {printed(values, repr)}: give a list with one {name} for each rod.")
     found = list(values)
     if all(type(x) is float for x in found):
         return column(np.array(found, dtype=np.float64), name)
@@ -102,10 +102,11 @@ def checked(columns: list[Any]) -> list[Any]:
                                ("gyration", gyration, gyration > 0)):
         for at, x in _wrong(column, fine):
             allowed = "positive or 0" if name == "mass" else "positive"
-            raise QuantityError(f"the {name} of a rod is {allowed}, and {name}{at} is {x}.")
+            raise QuantityError(f"the {name} of a rod is {allowed}, and {name}{at} is {printed(x)}.")
     for at, x in _wrong(gyration, ~_shorter(gyration, abs(center))):
         raise QuantityError(f"the radius of gyration about the joint is at least the distance of the centre of mass, "
-                            f"and gyration{at} is {x} and center{at} is {center[*at]}: give gyration >= |center|.")
+                            f"and gyration{at} is {printed(x)} and center{at} is {printed(center[*at])}: give "
+                            f"gyration >= |center|.")
     if not (mass > 0).astype(bool).any(axis=-1).all():
         raise SceneError("a chain without any mass has no equations of motion, 0 theta'' = 0: give a rod a mass.")
     return columns
@@ -120,7 +121,7 @@ def _wrong(column: Any, fine: Any) -> Iterator[tuple[list[int], Any]]:
 def check_damping(damping: Any) -> None:
     """Raise QuantityError where a damper would put energy in."""
     for at, x in _wrong(damping, damping >= 0):
-        raise QuantityError(f"joint damping takes energy out, and damping{at} is {x}: give a value >= 0.")
+        raise QuantityError(f"joint damping takes energy out, and damping{at} is {printed(x)}: give a value >= 0.")
 
 
 def _shorter(left: Any, right: Any) -> Any:
@@ -166,15 +167,18 @@ def substitution(values: Mapping[Any, Any] | None, t: Any) -> Callable[[Any], An
     """
     refuse_text(values, "values")
     if values is not None and not isinstance(values, Mapping):
-        raise NotAQuantityError(f"values is {values!r}: give a mapping of Symbols to numbers, as in {{m: 1, l: 2}}.")
+        raise NotAQuantityError(f"values is {printed(values, repr)}: give a mapping of Symbols to numbers, "
+                                f"as in {{m: 1, l: 2}}.")
     numbers = {}
     for symbol, value in (values or {}).items():
         refuse_text(symbol, "a key of values")
         if not isinstance(symbol, Symbol):
-            raise NotAQuantityError(f"values maps {symbol!r}, which is not a Symbol, to {value!r}: give Symbols.")
+            raise NotAQuantityError(f"values maps {printed(symbol, repr)}, which is not a Symbol, to "
+                                    f"{printed(value, repr)}: give Symbols.")
         if symbol == t:
-            raise QuantityError(f"the time {t} is no parameter, and values gives it the value {value!r}, which would "
-                                f"stop the support: leave {t} out, and give it to acceleration(t, theta, omega).")
+            raise QuantityError(f"the time {t} is no parameter, and values gives it the value {printed(value, repr)}, "
+                                f"which would stop the support: leave {t} out, and give it to acceleration(t, theta, "
+                                f"omega).")
         numbers[symbol] = quantity(value, f"the value of {symbol}")
 
     def replaced(expression: Any) -> Any:

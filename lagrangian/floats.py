@@ -20,6 +20,7 @@ from .errors import QuantityError
 from .machine import machine
 from .pace import Pace
 from .quantities import high_low, quantity, to_float
+from .states import within_floats
 from .stepper import DONE, STUCK, advance, room, total
 
 __all__ = ["FloatRun", "integrate_floats", "split", "wrapped"]
@@ -64,6 +65,7 @@ def split(values: Any, angles: bool) -> Any:
     for k, x in enumerate(values):
         exact = quantity(x, "a state")
         whole = _nearest_turns(exact) if angles and abs(exact) > 3 else 0
+        within_floats(exact, "a state")
         out[:, k] = *high_low(exact - 2 * pi * whole if whole else exact), whole
     return out
 

@@ -50,6 +50,7 @@ from .errors import (
     NotASceneError,
     QuantityError,
     SceneError,
+    printed,
 )
 from .inverse import inverse
 from .quantities import quantity, refuse_text, refuse_unordered
@@ -283,7 +284,7 @@ def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
     refuse_text(about, "about")
     refuse_unordered(about, "about")
     if not isinstance(about, Iterable):
-        raise NotAQuantityError(f"about is {about!r}: give a list of {len(scene)} angles.")
+        raise NotAQuantityError(f"about is {printed(about, repr)}: give a list of {len(scene)} angles.")
     angles = tuple(quantity(angle, f"about[{i}]") for i, angle in enumerate(about))
     if len(angles) != len(scene):
         raise SceneError(f"about holds one angle a rod, and here are {len(angles)} angles for {len(scene)} rods.")
@@ -302,10 +303,10 @@ def _remainder(rest: tuple[Any, ...], moments: list[Any], pushes: list[Any]) -> 
     k = _first_turned(moments)
     if k is None:
         return [Integer(0)] * len(moments)
-    still = f", and {-without[i]} rod {i + 1} without the horizontal driving" if any(pushes) else ""
+    still = f", and {printed(-without[i])} rod {i + 1} without the horizontal driving" if any(pushes) else ""
     raise NotAnEquilibriumError(
-        f"the angles {rest} are no equilibrium: there the moment {-moments[k]} turns rod {k + 1}{still}.  Linearise "
-        f"about an equilibrium: 0 or pi for every angle is one where no spring is strained."
+        f"the angles {printed(rest)} are no equilibrium: there the moment {printed(-moments[k])} turns rod {k + 1}"
+        f"{still}.  Linearise about an equilibrium: 0 or pi for every angle is one where no spring is strained."
     )
 
 

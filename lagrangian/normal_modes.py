@@ -39,13 +39,14 @@ from sympy import (
 from .drive import frequency, in_scales, modes_of, natural_scales
 from .eigen import eigenpairs
 from .energy import Scene
-from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError
+from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError, printed
 from .linearize import LinearEquations
 from .quantities import refuse_text
 
 __all__ = ["NormalModes", "normal_modes"]
 
 _DIGITS = 30
+_MOST_DIGITS = 100_000
 
 
 @dataclass(frozen=True, repr=False)
@@ -139,7 +140,7 @@ def normal_modes(lin: LinearEquations, digits: int | None = None) -> NormalModes
     InhomogeneousError
         A remainder that is not zero: take ``lin.homogeneous()``.
     NotASceneError, TextError, QuantityError
-        ``lin`` is not from :func:`linearize`; ``digits`` is not a positive integer.
+        ``lin`` is not from :func:`linearize`; ``digits`` is not a positive integer, 100,000 at most.
 
     Speed and accuracy: with ``digits=None`` mu is exact (rationals, radicals, or roots of irreducible polynomials
     that SymPy isolates and refines on demand), and U for N > 2 has 30 digits.  ``digits=d`` computes both as numbers,
@@ -173,7 +174,9 @@ def _check(lin: LinearEquations, digits: int | None) -> None:
     if not isinstance(lin, LinearEquations):
         raise NotASceneError(f"normal_modes takes the result of linearize, and this is {lin!r}.")
     if digits is not None and (isinstance(digits, bool) or not isinstance(digits, int) or digits < 1):
-        raise QuantityError(f"digits is a positive integer or None, and this is {digits!r}.")
+        raise QuantityError(f"digits is a positive integer or None, and this is {printed(digits, repr)}.")
+    if digits is not None and digits > _MOST_DIGITS:
+        raise QuantityError(f"digits is {printed(digits)}: give at most {_MOST_DIGITS}; balls of more take for ever.")
     if any(lin.damping):
         raise NotDecoupledError(
             f"normal modes are those of an undamped chain, and the damping matrix here is {lin.damping.tolist()}: "

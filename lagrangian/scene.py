@@ -51,7 +51,7 @@ from sympy import (
 )
 from sympy.core.function import AppliedUndef
 
-from .errors import DriveError, NotAQuantityError, QuantityError, SceneError
+from .errors import DriveError, NotAQuantityError, QuantityError, SceneError, printed
 from .quantities import quantity, refuse_text, refuse_unordered
 
 __all__ = ["Arrangement", "Rod", "Support"]
@@ -63,7 +63,8 @@ _ROUGH = (Abs, Heaviside, DiracDelta, Max, Min, Mod, Piecewise, ceiling, floor, 
 def _positive(value: Any, name: str) -> Any:
     expression = quantity(value, name)
     if expression.is_positive is False:
-        raise QuantityError(f"the {name} of a rod is positive, and this {name} is {expression}: give a {name} > 0.")
+        raise QuantityError(f"the {name} of a rod is positive, and this {name} is {printed(expression)}: give a "
+                            f"{name} > 0.")
     return expression
 
 
@@ -104,8 +105,8 @@ class Rod:
         if _certainly_negative(self.gyration**2 - self.center**2):
             raise QuantityError(
                 f"the radius of gyration about the joint is at least the distance of the centre of mass: "
-                f"gyration = {self.gyration} and center = {self.center} would make the moment of inertia about "
-                f"the centre of mass, m (R**2 - H**2), negative.  Give gyration >= |center|."
+                f"gyration = {printed(self.gyration)} and center = {printed(self.center)} would make the moment of "
+                f"inertia about the centre of mass, m (R**2 - H**2), negative.  Give gyration >= |center|."
             )
 
     @classmethod
@@ -272,8 +273,8 @@ def _rods(rods: Any) -> tuple[Rod, ...]:
     refuse_unordered(rods, "rods")
     if isinstance(rods, (int, Rod)) or not isinstance(rods, Iterable):
         raise SceneError(
-            f"rods is {rods!r}: the number N of rods is positive and is the length of a list, so give N rods, "
-            f"as in [Rod.uniform(m, l)] * N with N >= 1."
+            f"rods is {printed(rods, repr)}: the number N of rods is positive and is the length of a list, so give N "
+            f"rods, as in [Rod.uniform(m, l)] * N with N >= 1."
         )
     chain = tuple(rods)
     if not chain:
@@ -284,7 +285,8 @@ def _rods(rods: Any) -> tuple[Rod, ...]:
     for i, rod in enumerate(chain, 1):
         refuse_text(rod, f"rod {i}")
         if not isinstance(rod, Rod):
-            raise NotAQuantityError(f"rod {i} is {rod!r}, not a Rod: give Rod(mass, length, center, gyration).")
+            raise NotAQuantityError(f"rod {i} is {printed(rod, repr)}, not a Rod: give Rod(mass, length, center, "
+                                    f"gyration).")
     return chain
 
 
@@ -294,7 +296,8 @@ def _one_a_joint(values: Any, name: str, count: int) -> tuple[Any, ...] | None:
     refuse_text(values, name)
     refuse_unordered(values, name)
     if not isinstance(values, Iterable):
-        raise NotAQuantityError(f"{name} is {values!r}: give a list with one value for each of the {count} joints.")
+        raise NotAQuantityError(f"{name} is {printed(values, repr)}: give a list with one value for each of the "
+                                f"{count} joints.")
     joints = tuple(quantity(value, f"{name}[{i}]") for i, value in enumerate(values))
     if len(joints) != count:
         raise SceneError(
@@ -307,14 +310,16 @@ def _one_a_joint(values: Any, name: str, count: int) -> tuple[Any, ...] | None:
 def _check_damping(damping: tuple[Any, ...] | None) -> None:
     for i, value in enumerate(damping or ()):
         if value.is_negative:
-            raise QuantityError(f"joint damping takes energy out, and damping[{i}] is {value}: give a value >= 0.")
+            raise QuantityError(f"joint damping takes energy out, and damping[{i}] is {printed(value)}: give a "
+                                f"value >= 0.")
 
 
 def _time(t: Any, support: Support) -> Any:
     """The Symbol of time: the one given, or the support's own Symbol called ``t``, or a new one."""
     refuse_text(t, "t")
     if t is not None and not isinstance(t, Symbol):
-        raise NotAQuantityError(f"t is {t!r}, not a Symbol: give the Symbol that the support's motion is written in.")
+        raise NotAQuantityError(f"t is {printed(t, repr)}, not a Symbol: give the Symbol that the support's motion "
+                                f"is written in.")
     name = "t" if t is None else t.name
     symbols = support.xi.free_symbols | support.eta.free_symbols
     found = {x for x in symbols if x.name == name}

@@ -11,6 +11,7 @@ from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, besselj
 
 from lagrangian import (
     CompiledChain,
+    Crossing,
     DriveError,
     Ensemble,
     InhomogeneousError,
@@ -201,6 +202,33 @@ MASKED = np.ma.array([1.0, 2.0], mask=[False, True])
 def test_masks_are_not_lost(ask):
     """The entries behind them would count."""
     with pytest.raises(NotAQuantityError, match="mask"):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
+BIG = 10**5000
+
+
+@pytest.mark.parametrize(("ask", "words"), [
+    (lambda chain: Rod.uniform(-BIG, 2), "mass is a number of too many digits"),
+    (lambda chain: Rod(1, 1, BIG, 2), "center = a number of too many digits"),
+    (lambda chain: Scene([rod], damping=[-BIG]), "a number of too many digits"),
+    (lambda chain: Scene([rod]).compile({m: -BIG, l: 1, g: 1}), "a number of too many digits"),
+    (lambda chain: CompiledChain([1], [1], [BIG], [1]), "a number of too many digits"),
+    (lambda chain: CompiledChain([1], [1], [1], [1], damping=[-BIG]), "a number of too many digits"),
+    (lambda chain: Crossing(-BIG, 0), "a number of too many digits"),
+    (lambda chain: normal_modes(linear(), digits=BIG), "at most 100000"),
+    (lambda chain: normal_modes(linear(), digits=-BIG), "a number of too many digits"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], digits=BIG), "at most 100000"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], accuracy=BIG), "positive number.*too many"),
+    (lambda chain: simulate(chain, [1, BIG], [0, 0], [0, 1]), "beyond the range of float64"),
+    (lambda chain: simulate(chain, [1, 1], [0, BIG], [0, 1], method="DOP853"), "beyond the range of float64"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, BIG]), "beyond the range of float64"),
+    (lambda chain: chain.acceleration(0, [1, BIG], [0, 0]), "beyond the range of float64"),
+    (lambda chain: Ensemble([[BIG, 1]], 1, 1, 1), "beyond the range of float64"),
+])
+def test_integers_that_python_does_not_print_are_refused_by_name(ask, words):
+    """And not by Python's ValueError of 4300 digits, or as an infinity that nobody gave."""
+    with pytest.raises(QuantityError, match=words):
         ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
 
 
