@@ -40,6 +40,8 @@ from .simulate import simulate
 from .trajectories import Trajectories
 from .trajectory import Trajectory
 
+__version__ = "0.1.0"
+
 __all__ = [
     "CompiledChain",
     "CompiledEquations",

@@ -52,6 +52,13 @@ class CompiledChain(Links):
     upright : whether angles are from the upward vertical (the article) or the downward one (the notes)
     model : None, ``"bobs"`` or ``"rods"``; None takes the least that will do, and ``chain.model`` says which
 
+    Attributes
+    ----------
+    gravity : g as the exact SymPy number it was given as; ``float(chain.gravity)`` is a float again; m/s**2
+    upright, model : as above, ``"bobs"`` or ``"rods"``; ``len(chain)`` is n
+    rods : shape (n, 8), float64: mass, length and moments of every rod, see :attr:`rods`; kg, m, kg m**2, kg m
+    damping, springs : shape (n,), float64, or None; N m s, N m
+
     Floats are taken as the exact numbers they are, SymPy numbers and fractions too.  Accelerations in float64 round:
     within 4e-15 of the largest for masses 1e12 and lengths 1e6 apart.  Where float64 leaves that in doubt, at one
     ordinary state in 750 and at one in nineteen of such chains, the same recursion runs again with 31 digits or more.
@@ -82,10 +89,11 @@ class CompiledChain(Links):
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` at time t; rad/s**2.
 
-        Shapes: theta and omega (n,), or (n, chains) for many chains with the same rods; the result likewise.  The
-        arithmetic is that of the numbers given: float64; mpmath numbers, at the precision of their context;
-        python-flint balls, at flint's current precision, and then the result contains the true one for all states
-        and times in the balls.
+        Shapes: theta and omega (n,), or (n, chains) for many chains with the same rods; the result likewise.  (It is
+        (chains, n) for :class:`lagrangian.Ensemble` and :func:`lagrangian.simulate`: where there are as many chains as
+        rods, nothing tells one from the other.)  The arithmetic is that of the numbers given: float64; mpmath numbers,
+        at the precision of their context; python-flint balls, at flint's current precision, and then the result
+        contains the true one for all states and times in the balls.
 
         Raises SceneError if the shapes do not fit, QuantityError where there is no finite answer, TextError for text.
         """
@@ -174,7 +182,7 @@ class CompiledChain(Links):
     @cached_property
     def _single(self) -> tuple[Any, Any]:
         """The machine code for one chain, None without numba, and the constants that it takes."""
-        constants = self.bobs if self.model == "bobs" else self.rods
+        constants = self._bobs if self.model == "bobs" else self._rods
         return machine(MODELS[self.model]) if has_numba() else None, constants
 
     @cached_property
@@ -190,7 +198,7 @@ class CompiledChain(Links):
     def _many(self, theta: Any, omega: Any, ax: float, ay: float, out: Any) -> tuple[bool, Any]:
         tau = self.torques(theta, omega) if self.has_torques else None
         if has_numba() and theta.ndim == 2:
-            found = accelerate_together(self.rods, theta, omega, tau, ax, ay, self._counterweighted, out)
+            found = accelerate_together(self._rods, theta, omega, tau, ax, ay, self._counterweighted, out)
             if found[0]:
                 return found
         return accelerate_rows(self.rods, theta, omega, tau, ax, ay, out)

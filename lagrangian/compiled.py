@@ -24,6 +24,7 @@ from .chain import CompiledChain
 from .constants import substitution
 from .equations import EquationsOfMotion
 from .errors import DriveError, NotASceneError, QuantityError, SceneError
+from .frozen import Frozen
 from .machine import has_numba
 from .states import float_state, float_time
 
@@ -32,12 +33,12 @@ __all__ = ["CompiledEquations", "compile_equations"]
 TARGETS = ("numpy", "mpmath", "numba")
 
 
-class CompiledEquations:
-    """``acceleration(t, theta, omega)`` from the symbolic M and f; made by :func:`compile_equations`.
+class CompiledEquations(Frozen):
+    """``acceleration(t, theta, omega)`` from the symbolic M and f; made by :func:`compile_equations`.  Immutable.
 
     Attributes
     ----------
-    equations : the :class:`EquationsOfMotion`, with numbers for their Symbols
+    equations : the :class:`EquationsOfMotion` that it was made from, Symbols and all
     target : ``"numpy"``, ``"mpmath"`` or ``"numba"``
     chain : the same chain as a :class:`CompiledChain`
     """
@@ -49,7 +50,7 @@ class CompiledEquations:
             raise QuantityError(f"equations are compiled for one chain, and these values are for {len(chain)}: give "
                                 f"one number for every Symbol, or use scene.compile(values).")
         self.chain, self._values = chain, dict(values or {})
-        n, replace = len(equations.scene), substitution(values)
+        n, replace = len(equations.scene), substitution(values, equations.t)
         self._time = Dummy("t")
         rates, angles = ([Symbol(f"{letter}{k}") for k in range(n)] for letter in ("w", "q"))
         plain = dict(zip(equations.scene.velocities, rates, strict=True)), dict(zip(equations.scene.coordinates, angles,
@@ -66,6 +67,7 @@ class CompiledEquations:
                                 f"in "
                                 f"compile_equations(equations, {{symbol: number}}).")
         self._function = self._translated([self._time, *names], sides)
+        self._made = True
 
     def _translated(self, arguments: list[Any], sides: list[Any]) -> Any:
         modules = "mpmath" if self.target == "mpmath" else "numpy"
@@ -146,8 +148,8 @@ def compile_equations(equations: EquationsOfMotion, values: Mapping[Any, Any] | 
     precision) or ``"numba"`` (NumPy where numba is not installed).  What the scene has not, drive, dampers, springs,
     is not in the code.
 
-    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number, SceneError for an
-    unknown target, TextError for text.
+    Raises NotASceneError for anything but equations, QuantityError where a Symbol has no number or the time has one,
+    SceneError for an unknown target, TextError for text.
 
     >>> from sympy import symbols
     >>> from lagrangian import Rod, Scene, euler_lagrange

@@ -18,8 +18,9 @@ from sympy import Symbol
 from sympy.core.relational import Relational
 
 from .angles import product
-from .errors import NotAQuantityError, QuantityError, SceneError
-from .quantities import quantity, real_number, refuse_mask, refuse_text, to_float
+from .errors import NotAQuantityError, QuantityError, SceneError, printed
+from .frozen import locked
+from .quantities import namesakes, quantity, real_number, refuse_mask, refuse_text, refuse_unordered, to_float
 
 __all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
            "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
@@ -56,15 +57,14 @@ def to_floats(values: Any) -> Any:
     """Numbers as float64, shape (n,), read only; None stays None."""
     if values is None:
         return None
-    found = np.array([to_float(x) for x in values])
-    found.flags.writeable = False
-    return found
+    return locked(np.array([to_float(x) for x in values]))
 
 
 def column(values: Any, name: str) -> Any:
     """float64 where that is what was given, else exact SymPy numbers as an object array."""
     refuse_text(values, name)
     refuse_mask(values, name)
+    refuse_unordered(values, name)
     if getattr(values, "ndim", 1) > 1:
         raise SceneError(f"{name} has shape {values.shape}, and the rods of a CompiledChain are given by n numbers: "
                          f"give Ensemble(mass, length, center, gyration) for many chains, each with its own rods.")
@@ -74,7 +74,7 @@ def column(values: Any, name: str) -> Any:
             raise QuantityError(f"{name} holds {bad}, which is not finite: give finite numbers.")
         return values.astype(np.float64)
     if isinstance(values, (int, float)) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) == 0:
-        raise NotAQuantityError(f"{name} is {values!r}: give a list with one {name} for each rod.")
+        raise NotAQuantityError(f"{name} is {printed(values, repr)}: give a list with one {name} for each rod.")
     found = list(values)
     if all(type(x) is float for x in found):
         return column(np.array(found, dtype=np.float64), name)
@@ -102,10 +102,11 @@ def checked(columns: list[Any]) -> list[Any]:
                                ("gyration", gyration, gyration > 0)):
         for at, x in _wrong(column, fine):
             allowed = "positive or 0" if name == "mass" else "positive"
-            raise QuantityError(f"the {name} of a rod is {allowed}, and {name}{at} is {x}.")
+            raise QuantityError(f"the {name} of a rod is {allowed}, and {name}{at} is {printed(x)}.")
     for at, x in _wrong(gyration, ~_shorter(gyration, abs(center))):
         raise QuantityError(f"the radius of gyration about the joint is at least the distance of the centre of mass, "
-                            f"and gyration{at} is {x} and center{at} is {center[*at]}: give gyration >= |center|.")
+                            f"and gyration{at} is {printed(x)} and center{at} is {printed(center[*at])}: give "
+                            f"gyration >= |center|.")
     if not (mass > 0).astype(bool).any(axis=-1).all():
         raise SceneError("a chain without any mass has no equations of motion, 0 theta'' = 0: give a rod a mass.")
     return columns
@@ -120,7 +121,7 @@ def _wrong(column: Any, fine: Any) -> Iterator[tuple[list[int], Any]]:
 def check_damping(damping: Any) -> None:
     """Raise QuantityError where a damper would put energy in."""
     for at, x in _wrong(damping, damping >= 0):
-        raise QuantityError(f"joint damping takes energy out, and damping{at} is {x}: give a value >= 0.")
+        raise QuantityError(f"joint damping takes energy out, and damping{at} is {printed(x)}: give a value >= 0.")
 
 
 def _shorter(left: Any, right: Any) -> Any:
@@ -159,18 +160,34 @@ def check_joints(mass: Any, joints: list[Any]) -> None:
                                  f"it a mass, or free its joints.")
 
 
-def substitution(values: Mapping[Any, Any] | None) -> Callable[[Any], Any]:
-    """``expression -> expression`` with numbers for Symbols; raises as :func:`quantity`, and NotAQuantityError."""
+def substitution(values: Mapping[Any, Any] | None, t: Any) -> Callable[[Any], Any]:
+    """``expression -> expression`` with numbers for Symbols, of which the time ``t`` is none.
+
+    Raises as :func:`quantity`, and NotAQuantityError.
+    """
     refuse_text(values, "values")
     if values is not None and not isinstance(values, Mapping):
-        raise NotAQuantityError(f"values is {values!r}: give a mapping of Symbols to numbers, as in {{m: 1, l: 2}}.")
+        raise NotAQuantityError(f"values is {printed(values, repr)}: give a mapping of Symbols to numbers, "
+                                f"as in {{m: 1, l: 2}}.")
     numbers = {}
     for symbol, value in (values or {}).items():
         refuse_text(symbol, "a key of values")
         if not isinstance(symbol, Symbol):
-            raise NotAQuantityError(f"values maps {symbol!r}, which is not a Symbol, to {value!r}: give Symbols.")
+            raise NotAQuantityError(f"values maps {printed(symbol, repr)}, which is not a Symbol, to "
+                                    f"{printed(value, repr)}: give Symbols.")
+        if symbol == t:
+            raise QuantityError(f"the time {t} is no parameter, and values gives it the value {printed(value, repr)}, "
+                                f"which would stop the support: leave {t} out, and give it to acceleration(t, theta, "
+                                f"omega).")
         numbers[symbol] = quantity(value, f"the value of {symbol}")
-    return lambda expression: expression.xreplace(numbers)
+
+    def replaced(expression: Any) -> Any:
+        found = expression.xreplace(numbers)
+        why = namesakes(numbers.keys(), found.free_symbols)
+        if why:
+            raise QuantityError(f"{expression} is left without a number: {why}")
+        return found
+    return replaced
 
 
 def one_by_one(values: Mapping[Any, Any] | None) -> list[Mapping[Any, Any]]:

@@ -19,7 +19,7 @@ from sympy import Integer, latex, pi
 
 from .angles import TURN
 from .chain import CompiledChain
-from .errors import NotASceneError, QuantityError, SceneError
+from .errors import NotASceneError, QuantityError, SceneError, printed
 from .pieces import Pieces
 from .precision import working
 from .quantities import quantity
@@ -55,10 +55,11 @@ class Crossing:
 
     def __post_init__(self) -> None:
         if not _is_whole(self.rod) or self.rod < 1:
-            raise QuantityError(f"a crossing's rod is {self.rod!r}: give its number, 1 for that at the support.")
+            raise QuantityError(f"a crossing's rod is {printed(self.rod, repr)}: give its number, 1 for that at the "
+                                f"support.")
         if not _is_whole(self.direction) or self.direction not in (-1, 0, 1):
-            raise QuantityError(f"a crossing's direction is {self.direction!r}: give 0 for both ways, 1 for growing "
-                                f"angles or -1 for shrinking ones.")
+            raise QuantityError(f"a crossing's direction is {printed(self.direction, repr)}: give 0 for both ways, 1 "
+                                f"for growing angles or -1 for shrinking ones.")
         for name in ("rod", "direction"):
             object.__setattr__(self, name, int(getattr(self, name)))
         object.__setattr__(self, "angle", quantity(self.angle, "angle"))
@@ -99,7 +100,8 @@ def checked(events: Mapping[str, Crossing] | None, n: int) -> Mapping[str, Cross
                          f"{{'down': Crossing(1, 0)}}.")
     for event in events.values():
         if not isinstance(event, Crossing) or not 1 <= event.rod <= n:
-            raise SceneError(f"an event is a Crossing of one of the rods 1 to {n}, and this one is {event!r}.")
+            raise SceneError(f"an event is a Crossing of one of the rods 1 to {n}, and this one is "
+                             f"{printed(event, repr)}.")
     return events
 
 

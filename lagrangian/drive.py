@@ -33,14 +33,17 @@ from .errors import (
     NotPeriodicError,
     QuantityError,
 )
-from .quantities import quantity
+from .quantities import namesakes, quantity
 from .waves import NoWave, Waves, waves_of
 
 
-def frequency(omega0: Any, t: Any) -> Any:
-    """``omega0`` as a nonzero constant; raises as :func:`quantity`, and QuantityError."""
+def frequency(omega0: Any, scene: Scene) -> Any:
+    """``omega0`` as a nonzero constant; raises as :func:`quantity`, QuantityError and NameClashError."""
     omega0 = quantity(omega0, "omega0")
-    if omega0.is_zero or t in omega0.free_symbols or omega0.atoms(AppliedUndef):
+    why = namesakes(omega0.free_symbols, scene.free_symbols)
+    if why:
+        raise NameClashError(f"omega0 is {omega0}, and {why}")
+    if omega0.is_zero or scene.t in omega0.free_symbols or omega0.atoms(AppliedUndef):
         raise QuantityError(f"omega0 is a nonzero constant angular frequency, and this one is {omega0}.")
     return omega0
 
@@ -142,9 +145,10 @@ def fresh_symbol(name: str, scene: Scene, omega0: Any, replaced: Mapping[Any, An
     """
     gone = {old for old, meaning in (replaced or {}).items() if old == meaning} | {scene.t}
     if any(x.name == name for x in (scene.free_symbols | omega0.free_symbols) - gone):
+        spared = "" if name == "tau" else ", or pass dimensionless=False, which needs no h and v"
         raise NameClashError(
-            f"the result needs a Symbol called {name}, and the scene has one of its own: rename the scene's {name}, "
-            f"or pass dimensionless=False, which needs no h and v."
+            f"the result needs a Symbol called {name}, and the scene has one of its own: rename the scene's "
+            f"{name}{spared}."
         )
     return Symbol(name)
 

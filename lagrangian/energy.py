@@ -162,7 +162,8 @@ class Scene(Arrangement):
     SceneError
         No rods; not one damping or spring constant for every joint.
     DriveError
-        A support whose motion depends on a coordinate, is not smooth, or is written in two Symbols of one name.
+        A support whose motion depends on a coordinate, is not smooth, or is written in two Symbols of one name, or in a
+        Symbol t, tau or time that is not the scene's.
     QuantityError, NotAQuantityError, TextError
         A constant that depends on time or is not finite or not real; a thing of the wrong kind; text.
 
@@ -204,9 +205,9 @@ class Scene(Arrangement):
         joints have an array of shape (chains,), the result is an :class:`lagrangian.Ensemble`, its constants rounded
         once to float64, which takes a ms a chain.
 
-        Raises QuantityError where a Symbol has no number, or one of gravity or the support an array, DriveError where
-        the support moves by a function that is not given, TextError for text.  Functions of which no Taylor series is
-        known here, ``besselj`` or ``atan``, are refused when accelerations are asked for.
+        Raises QuantityError where a Symbol has no number, the time has one, or one of gravity or the support has an
+        array; DriveError where the support moves by a function that is not given; TextError for text.  Functions of
+        which no Taylor series is known here, ``besselj`` or ``atan``, are refused when accelerations are asked for.
 
         >>> from sympy import symbols
         >>> from lagrangian import Rod
@@ -219,7 +220,7 @@ class Scene(Arrangement):
         return self._ensemble(chains, model) if chains else self._chain(values, model)
 
     def _chain(self, values: Mapping[Any, Any] | None, model: str | None) -> CompiledChain:
-        replace = substitution(values)
+        replace = substitution(values, self.t)
         mass, length, center, gyration = ([replace(getattr(rod, name)) for rod in self.rods] for name in NAMES)
         damping, springs = (None if constants is None else [replace(x) for x in constants]
                             for constants in (self.damping, self.springs))
@@ -232,7 +233,7 @@ class Scene(Arrangement):
     def _ensemble(self, chains: Sequence[Mapping[Any, Any]], model: str | None) -> Ensemble:
         """Every chain with values of its own, those of gravity and the support excepted."""
         first = self._chain(chains[0], model)
-        replaced = [substitution(values) for values in chains]
+        replaced = [substitution(values, self.t) for values in chains]
 
         @cache
         def numbers(expression: Any) -> list[float]:

@@ -18,7 +18,7 @@ from .arithmetic import arithmetic_of
 from .chain import CompiledChain
 from .constants import NAMES, check_damping, check_joints, checked, float_row
 from .errors import QuantityError, SceneError
-from .frozen import Frozen
+from .frozen import Frozen, locked
 from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
 from .redone import in_pairs, rows_in_pairs
@@ -124,6 +124,7 @@ class Ensemble(Frozen):
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` at time t, shape (chains, n) as theta and omega have; rad/s**2.
 
+        (For many chains with the same rods :meth:`lagrangian.CompiledChain.acceleration` takes (n, chains).)
         The arithmetic is that of the numbers given, as for :meth:`lagrangian.CompiledChain.acceleration`; mpmath
         numbers and balls take one chain after the other.
 
@@ -235,7 +236,4 @@ def _repeated(given: dict[str, Any]) -> dict[str, Any]:
         raise SceneError(f"an ensemble is chains of n rods, and its constants have the shapes {shapes}: give shape "
                          f"(chains, n), (n,) for what all chains share, or (chains, 1) for what all rods of a chain "
                          f"share.")
-    found = {name: np.array(np.broadcast_to(array, shape), order="C") for name, array in given.items()}
-    for array in found.values():
-        array.flags.writeable = False
-    return found
+    return {name: locked(np.array(np.broadcast_to(array, shape), order="C")) for name, array in given.items()}

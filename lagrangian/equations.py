@@ -41,6 +41,8 @@ __all__ = ["EquationsOfMotion", "euler_lagrange"]
 class EquationsOfMotion:
     """``mass_matrix @ theta'' = forcing``, complete once constructed.  Immutable and exact.
 
+    Made by :func:`euler_lagrange`.
+
     Attributes
     ----------
     scene : the :class:`Scene` they belong to

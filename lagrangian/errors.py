@@ -7,6 +7,10 @@ kind of object is right, its value is not), a ``TypeError`` (the kind of object 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from numbers import Number
+from typing import Any
+
 __all__ = [
     "DriveError",
     "InhomogeneousError",
@@ -21,6 +25,7 @@ __all__ = [
     "QuantityError",
     "SceneError",
     "TextError",
+    "printed",
 ]
 
 
@@ -53,7 +58,7 @@ class DriveError(LagrangianError, ValueError):
 
 
 class NameClashError(LagrangianError, ValueError):
-    """A Symbol of the scene has the name of one that the result needs for something else."""
+    """A Symbol of the scene has the name of another one, that is given or that the result needs."""
 
 
 class NotAnEquilibriumError(LagrangianError, ValueError):
@@ -74,3 +79,16 @@ class NotPeriodicError(LagrangianError, ValueError):
 
 class NotDecoupledError(LagrangianError, ValueError):
     """No constant change of coordinates turns the linear equations into one equation a mode."""
+
+
+def printed(value: Any, form: Callable[[Any], str] = str) -> str:
+    """A value in a message: Python refuses to print integers of thousands of digits.
+
+    >>> printed(2), printed(-10**5000), printed([10**5000], repr)
+    ('2', 'a number of too many digits to print', 'a list of too many digits to print')
+    """
+    try:
+        return form(value)
+    except ValueError:
+        kind = "number" if isinstance(value, Number) or hasattr(value, "is_number") else type(value).__name__
+        return f"a {kind} of too many digits to print"

@@ -20,6 +20,7 @@ from .errors import QuantityError
 from .machine import machine
 from .pace import Pace
 from .quantities import high_low, quantity, to_float
+from .states import within_floats
 from .stepper import DONE, STUCK, advance, room, total
 
 __all__ = ["FloatRun", "integrate_floats", "split", "wrapped"]
@@ -64,6 +65,7 @@ def split(values: Any, angles: bool) -> Any:
     for k, x in enumerate(values):
         exact = quantity(x, "a state")
         whole = _nearest_turns(exact) if angles and abs(exact) > 3 else 0
+        within_floats(exact, "a state")
         out[:, k] = *high_low(exact - 2 * pi * whole if whole else exact), whole
     return out
 
@@ -87,7 +89,8 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     keeps every step's series.  Raises DriveError where the support has no Taylor series, QuantityError where steps
     shrink to nothing.
     """
-    n = len(chain)
+    n, moved = len(chain), rods is not None
+    rods = rods if moved else chain.rods.copy()  # machine code would be translated again for what is read only
     marks = np.ascontiguousarray(split(times, False)[:2].T)
     state, clock = np.zeros((5, n)), marks[0].copy()
     state[:3], state[3:] = split(theta, True), split(omega, False)[:2]
@@ -97,11 +100,11 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
     most = min(most, 4096) if keep else most
     found, steps, space, pace = 0, 0, room(n, order), Pace()
     while True:
-        pull, waves = _shaking(chain, clock, order, rods is not None)
+        pull, waves = _shaking(chain, clock, order, moved)
         if keep:
             record = np.empty((most, 2 + n * (order + 4)))
         outcome, made, found = machine(advance)(
-            chain.rods if rods is None else rods, chain.damping, chain.springs, pull, waves, tolerance, state,
+            rods, chain.damping, chain.springs, pull, waves, tolerance, state,
             clock, marks, found, out, most, record, space)
         steps += made
         if keep:

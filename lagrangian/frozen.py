@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["Frozen"]
+import numpy as np
+
+__all__ = ["Frozen", "locked"]
 
 
 class Frozen:
@@ -15,3 +17,10 @@ class Frozen:
             raise AttributeError(f"{type(self).__name__} objects do not change, and the {name} of one is set to "
                                  f"{value}: make another one.")
         super().__setattr__(name, value)
+
+
+def locked(array: Any) -> Any:
+    """The same array, read only."""
+    found = np.asarray(array).view()
+    found.flags.writeable = False
+    return found

@@ -50,9 +50,10 @@ from .errors import (
     NotASceneError,
     QuantityError,
     SceneError,
+    printed,
 )
 from .inverse import inverse
-from .quantities import quantity, refuse_text
+from .quantities import quantity, refuse_text, refuse_unordered
 from .scene import column
 
 __all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
@@ -61,6 +62,8 @@ __all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
 @dataclass(frozen=True, repr=False)
 class FirstOrderSystem:
     """``dx/dtau = P(tau) x`` with ``x = (theta, dtheta/dtau)``; unpacks as ``P, tau, period``.  Immutable, exact.
+
+    Made by :meth:`LinearEquations.first_order`.
 
     Attributes
     ----------
@@ -89,6 +92,8 @@ class FirstOrderSystem:
 @dataclass(frozen=True, repr=False)
 class LinearEquations:
     """``A theta'' + damping theta' + stiffness theta + remainder = 0``, theta the deviation from ``about``.
+
+    Made by :func:`linearize`.
 
     Attributes
     ----------
@@ -171,7 +176,7 @@ class LinearEquations:
         NotPeriodicError
             The driving is not a sum of cosines and sines of rational multiples of omega0 t.
         NameClashError
-            The scene uses a Symbol called tau, h or v for something else.
+            The scene uses a Symbol called tau, h or v for something else, or one called like omega0 that is another.
         QuantityError, NotAQuantityError, TextError
             omega0 is zero, depends on time, or is not a number or expression.
 
@@ -186,7 +191,7 @@ class LinearEquations:
         >>> P[1, 0], period
         (-3*h*cos(tau)/2 + 3/(2*v**2), 2*pi)
         """
-        omega0 = frequency(omega0, self.t)
+        omega0 = frequency(omega0, self.scene)
         if any(expand(entry) != 0 for entry in self.remainder):
             raise InhomogeneousError(
                 f"x' = P x has no place for a remainder, and this one is {_short(self.remainder)} (from the "
@@ -276,8 +281,9 @@ def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
     if about is None:
         return (Integer(0),) * len(scene)
     refuse_text(about, "about")
+    refuse_unordered(about, "about")
     if not isinstance(about, Iterable):
-        raise NotAQuantityError(f"about is {about!r}: give a list of {len(scene)} angles.")
+        raise NotAQuantityError(f"about is {printed(about, repr)}: give a list of {len(scene)} angles.")
     angles = tuple(quantity(angle, f"about[{i}]") for i, angle in enumerate(about))
     if len(angles) != len(scene):
         raise SceneError(f"about holds one angle a rod, and here are {len(angles)} angles for {len(scene)} rods.")
@@ -296,10 +302,10 @@ def _remainder(rest: tuple[Any, ...], moments: list[Any], pushes: list[Any]) -> 
     k = _first_turned(moments)
     if k is None:
         return [Integer(0)] * len(moments)
-    still = f", and {-without[i]} rod {i + 1} without the horizontal driving" if any(pushes) else ""
+    still = f", and {printed(-without[i])} rod {i + 1} without the horizontal driving" if any(pushes) else ""
     raise NotAnEquilibriumError(
-        f"the angles {rest} are no equilibrium: there the moment {-moments[k]} turns rod {k + 1}{still}.  Linearise "
-        f"about an equilibrium: 0 or pi for every angle is one where no spring is strained."
+        f"the angles {printed(rest)} are no equilibrium: there the moment {printed(-moments[k])} turns rod {k + 1}"
+        f"{still}.  Linearise about an equilibrium: 0 or pi for every angle is one where no spring is strained."
     )
 
 

@@ -12,7 +12,7 @@ from sympy import Rational
 from .arithmetic import Arithmetic
 from .constants import LIGHT, NAMES, check_joints, checked, column, float_row, joint_constants, rod_row, to_floats
 from .errors import NotAQuantityError, SceneError
-from .frozen import Frozen
+from .frozen import Frozen, locked
 from .quantities import quantity, real_number, to_float
 from .redone import FINE, constants_in_pairs
 from .shaking import Shaking, shaking_of
@@ -105,15 +105,25 @@ class Links(Frozen):
 
     @cached_property
     def rods(self) -> Any:
-        """Rows ``m, l, I, Ic, J, It, m H, m (l - H)`` as float64, shape (n, 8), each rounded once or twice."""
+        """Rows ``m, l, I, Ic, J, It, m H, m (l - H)`` as float64, shape (n, 8), each rounded once or twice; read only.
+        """
+        return locked(self._rods)
+
+    @cached_property
+    def bobs(self) -> Any:
+        """Rows ``m, l, m_k/m_(k-1), 1/m`` as float64, shape (n, 4); read only."""
+        return locked(self._bobs)
+
+    @cached_property
+    def _rods(self) -> Any:
+        """:attr:`rods` for machine code, which would be translated again for what is read only."""
         if self._columns[0].dtype == object:
             exact = self._exact_rods(Rational(LIGHT))
             return np.array([[to_float(x) for x in row] for row in exact])
         return np.stack(float_row(*self._columns), axis=1)
 
     @cached_property
-    def bobs(self) -> Any:
-        """Rows ``m, l, m_k/m_(k-1), 1/m`` as float64, shape (n, 4)."""
+    def _bobs(self) -> Any:
         m, l = self.rods[:, 0], self.rods[:, 1]
         ratio = np.concatenate([[0.0], m[1:] / m[:-1]])
         return np.ascontiguousarray(np.stack([m, l, ratio, 1 / m], axis=1))
@@ -124,14 +134,14 @@ class Links(Frozen):
         return [rod_row(m if m != 0 else light, l, H, R**2) for m, l, H, R in zip(*columns, strict=True)]
 
     def rods_in(self, arithmetic: Arithmetic) -> Any:
-        """:attr:`rods` in another arithmetic, from the exact numbers; shape (n, 8)."""
+        """:attr:`rods` in an arithmetic of :mod:`lagrangian.arithmetic`, from the exact numbers; shape (n, 8)."""
         out = np.empty((len(self), 8), dtype=object)
         for k, row in enumerate(self._exact_rods(Rational(1, 10**400))):
             out[k] = [arithmetic.number(x) for x in row]
         return out
 
     def joints_in(self, arithmetic: Arithmetic) -> list[Any]:
-        """Damping and springs, each None or shape (n,)."""
+        """Damping and springs in an arithmetic of :mod:`lagrangian.arithmetic`, each None or shape (n,)."""
         return [None if values is None else arithmetic.array(arithmetic.number(quantity(x, "joint")) for x in values)
                 for values in self._joints]
 
@@ -194,7 +204,7 @@ class Links(Frozen):
     def energy_of(self, angle: Any, omega: Any, turns: Any = None) -> Any:
         """:meth:`energy` of angles, rates and, where given, whole turns of the angles, shapes (n,) or (n, any); J.
 
-        Springs count the turns; sines of the rest lose nothing.
+        Springs count the turns; sines of the rest lose nothing.  Of float64 arrays, which are not checked.
         """
         shape = (-1,) + (1,) * (angle.ndim - 1)
         m, l, _, Ic, _, _, mH, mG = (column.reshape(shape) for column in self.rods.T)

@@ -39,18 +39,21 @@ from sympy import (
 from .drive import frequency, in_scales, modes_of, natural_scales
 from .eigen import eigenpairs
 from .energy import Scene
-from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError
+from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError, printed
 from .linearize import LinearEquations
 from .quantities import refuse_text
 
 __all__ = ["NormalModes", "normal_modes"]
 
 _DIGITS = 30
+_MOST_DIGITS = 100_000
 
 
 @dataclass(frozen=True, repr=False)
 class NormalModes:
     """``psi_i'' + mu_i s(t) psi_i = 0`` with ``theta = U psi``.  Immutable.
+
+    Made by :func:`normal_modes`.
 
     Attributes
     ----------
@@ -61,7 +64,8 @@ class NormalModes:
     digits : None where mu is exact; else the number of correct digits of mu
 
     ``mu`` and ``U`` are exact for N <= 2.  For N > 2, ``mu`` is exact where A and B are rational (up to a common
-    factor), and the entries of ``U`` are numbers of 30 digits, or of ``digits``.
+    factor), and the entries of ``U`` are numbers of 30 digits, or of ``digits``: SymPy Floats of that precision, since
+    Matrices and symbols stand beside them.
     """
 
     scene: Scene
@@ -98,7 +102,7 @@ class NormalModes:
         >>> normal_modes(linearize(euler_lagrange(scene))).mathieu(omega0)
         ((-3/(2*v**2), 3*h/2),)
         """
-        omega0 = frequency(omega0, self.scene.t)
+        omega0 = frequency(omega0, self.scene)
         found = {(q, k): part for q, pair in modes_of(self.time_factor, self.scene.t, omega0).items()
                  for k, part in enumerate(pair) if expand(part) != 0}
         other = [(q, "cos" if k == 0 else "sin") for q, k in found if (q, k) not in ((0, 0), (1, 0))]
@@ -136,7 +140,7 @@ def normal_modes(lin: LinearEquations, digits: int | None = None) -> NormalModes
     InhomogeneousError
         A remainder that is not zero: take ``lin.homogeneous()``.
     NotASceneError, TextError, QuantityError
-        ``lin`` is not from :func:`linearize`; ``digits`` is not a positive integer.
+        ``lin`` is not from :func:`linearize`; ``digits`` is not a positive integer, 100,000 at most.
 
     Speed and accuracy: with ``digits=None`` mu is exact (rationals, radicals, or roots of irreducible polynomials
     that SymPy isolates and refines on demand), and U for N > 2 has 30 digits.  ``digits=d`` computes both as numbers,
@@ -170,7 +174,9 @@ def _check(lin: LinearEquations, digits: int | None) -> None:
     if not isinstance(lin, LinearEquations):
         raise NotASceneError(f"normal_modes takes the result of linearize, and this is {lin!r}.")
     if digits is not None and (isinstance(digits, bool) or not isinstance(digits, int) or digits < 1):
-        raise QuantityError(f"digits is a positive integer or None, and this is {digits!r}.")
+        raise QuantityError(f"digits is a positive integer or None, and this is {printed(digits, repr)}.")
+    if digits is not None and digits > _MOST_DIGITS:
+        raise QuantityError(f"digits is {printed(digits)}: give at most {_MOST_DIGITS}; balls of more take for ever.")
     if any(lin.damping):
         raise NotDecoupledError(
             f"normal modes are those of an undamped chain, and the damping matrix here is {lin.damping.tolist()}: "

@@ -7,6 +7,7 @@ A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is 3602879701896397
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Set
 from decimal import Decimal
 from numbers import Integral, Rational as AnyRational, Real
 from typing import Any
@@ -18,7 +19,8 @@ from sympy import Catalan, E, EulerGamma, Expr, Float, GoldenRatio, I, Integer, 
 
 from .errors import NotAQuantityError, QuantityError, TextError
 
-__all__ = ["AnyMpf", "high_low", "quantity", "real_number", "refuse_mask", "refuse_text", "to_float"]
+__all__ = ["AnyMpf", "high_low", "namesakes", "quantity", "real_number", "refuse_mask", "refuse_text",
+           "refuse_unordered", "to_float"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
 _NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
@@ -34,6 +36,13 @@ def refuse_text(value: Any, name: str) -> None:
             f"{name} is the text {value!r}, and text is never evaluated: give a number, or a SymPy expression "
             f"such as Symbol('m') or Rational(1, 2)."
         )
+
+
+def refuse_unordered(values: Any, name: str) -> None:
+    """Raise :class:`NotAQuantityError` for a mapping, read as its keys otherwise, and for a set, in any order."""
+    if isinstance(values, (Mapping, Set)):
+        raise NotAQuantityError(f"{name} is {values!r}, a {type(values).__name__}, and what is in one has no order "
+                                f"here: give a list.")
 
 
 def refuse_mask(values: Any, name: str) -> None:
@@ -54,6 +63,14 @@ def quantity(value: Any, name: str) -> Any:
     if expression.is_real is False or (expression.is_number and expression.has(I) and not expression.is_real):
         raise QuantityError(f"{name} is {expression}, which is not real: give a real number or a Symbol.")
     return expression
+
+
+def namesakes(given: Set[Any], held: Set[Any]) -> str | None:
+    """Why a Symbol that is held is none of those given, though one of them is called like it; None where none is."""
+    others = {x.name for x in held} - {x.name for x in held & given}
+    alike = sorted(others & {x.name for x in given})
+    return (f"the {alike[0]} of the scene and the {alike[0]} that is given share the name but not the assumptions, and "
+            f"are two variables to SymPy: use one and the same Symbol in both places." if alike else None)
 
 
 def real_number(value: Any, name: str) -> Any:

@@ -51,18 +51,20 @@ from sympy import (
 )
 from sympy.core.function import AppliedUndef
 
-from .errors import DriveError, NotAQuantityError, QuantityError, SceneError
-from .quantities import quantity, refuse_text
+from .errors import DriveError, NotAQuantityError, QuantityError, SceneError, printed
+from .quantities import quantity, refuse_text, refuse_unordered
 
 __all__ = ["Arrangement", "Rod", "Support"]
 
+_TIMES = ("t", "tau", "time")  # Symbols that are called so are meant as the time, where a motion holds no other
 _ROUGH = (Abs, Heaviside, DiracDelta, Max, Min, Mod, Piecewise, ceiling, floor, frac, sign, re, im, arg, conjugate)
 
 
 def _positive(value: Any, name: str) -> Any:
     expression = quantity(value, name)
     if expression.is_positive is False:
-        raise QuantityError(f"the {name} of a rod is positive, and this {name} is {expression}: give a {name} > 0.")
+        raise QuantityError(f"the {name} of a rod is positive, and this {name} is {printed(expression)}: give a "
+                            f"{name} > 0.")
     return expression
 
 
@@ -103,8 +105,8 @@ class Rod:
         if _certainly_negative(self.gyration**2 - self.center**2):
             raise QuantityError(
                 f"the radius of gyration about the joint is at least the distance of the centre of mass: "
-                f"gyration = {self.gyration} and center = {self.center} would make the moment of inertia about "
-                f"the centre of mass, m (R**2 - H**2), negative.  Give gyration >= |center|."
+                f"gyration = {printed(self.gyration)} and center = {printed(self.center)} would make the moment of "
+                f"inertia about the centre of mass, m (R**2 - H**2), negative.  Give gyration >= |center|."
             )
 
     @classmethod
@@ -268,10 +270,11 @@ class Arrangement:
 
 def _rods(rods: Any) -> tuple[Rod, ...]:
     refuse_text(rods, "rods")
+    refuse_unordered(rods, "rods")
     if isinstance(rods, (int, Rod)) or not isinstance(rods, Iterable):
         raise SceneError(
-            f"rods is {rods!r}: the number N of rods is positive and is the length of a list, so give N rods, "
-            f"as in [Rod.uniform(m, l)] * N with N >= 1."
+            f"rods is {printed(rods, repr)}: the number N of rods is positive and is the length of a list, so give N "
+            f"rods, as in [Rod.uniform(m, l)] * N with N >= 1."
         )
     chain = tuple(rods)
     if not chain:
@@ -282,7 +285,8 @@ def _rods(rods: Any) -> tuple[Rod, ...]:
     for i, rod in enumerate(chain, 1):
         refuse_text(rod, f"rod {i}")
         if not isinstance(rod, Rod):
-            raise NotAQuantityError(f"rod {i} is {rod!r}, not a Rod: give Rod(mass, length, center, gyration).")
+            raise NotAQuantityError(f"rod {i} is {printed(rod, repr)}, not a Rod: give Rod(mass, length, center, "
+                                    f"gyration).")
     return chain
 
 
@@ -290,8 +294,10 @@ def _one_a_joint(values: Any, name: str, count: int) -> tuple[Any, ...] | None:
     if values is None:
         return None
     refuse_text(values, name)
+    refuse_unordered(values, name)
     if not isinstance(values, Iterable):
-        raise NotAQuantityError(f"{name} is {values!r}: give a list with one value for each of the {count} joints.")
+        raise NotAQuantityError(f"{name} is {printed(values, repr)}: give a list with one value for each of the "
+                                f"{count} joints.")
     joints = tuple(quantity(value, f"{name}[{i}]") for i, value in enumerate(values))
     if len(joints) != count:
         raise SceneError(
@@ -304,14 +310,16 @@ def _one_a_joint(values: Any, name: str, count: int) -> tuple[Any, ...] | None:
 def _check_damping(damping: tuple[Any, ...] | None) -> None:
     for i, value in enumerate(damping or ()):
         if value.is_negative:
-            raise QuantityError(f"joint damping takes energy out, and damping[{i}] is {value}: give a value >= 0.")
+            raise QuantityError(f"joint damping takes energy out, and damping[{i}] is {printed(value)}: give a "
+                                f"value >= 0.")
 
 
 def _time(t: Any, support: Support) -> Any:
     """The Symbol of time: the one given, or the support's own Symbol called ``t``, or a new one."""
     refuse_text(t, "t")
     if t is not None and not isinstance(t, Symbol):
-        raise NotAQuantityError(f"t is {t!r}, not a Symbol: give the Symbol that the support's motion is written in.")
+        raise NotAQuantityError(f"t is {printed(t, repr)}, not a Symbol: give the Symbol that the support's motion "
+                                f"is written in.")
     name = "t" if t is None else t.name
     symbols = support.xi.free_symbols | support.eta.free_symbols
     found = {x for x in symbols if x.name == name}
@@ -336,9 +344,12 @@ def _named_like_coordinates(expression: Any, count: int) -> list[str]:
 def _check_constants(scene: Arrangement) -> None:
     for name, value in scene.constants:
         clash = _named_like_coordinates(value, len(scene))
-        if scene.t in value.free_symbols or clash:
+        if clash:
+            raise QuantityError(f"{name} is constant, and {value} holds {clash[0]}, the name of a coordinate: give the "
+                                f"parameter another name.")
+        if scene.t in value.free_symbols:
             raise QuantityError(
-                f"{name} is constant, and {value} depends on {clash[0] if clash else scene.t}: give a constant.  "
+                f"{name} is constant, and {value} depends on {scene.t}: give a constant.  "
                 f"(A gravity g + a(t) is a support with eta'' = a(t).)"
             )
 
@@ -350,6 +361,12 @@ def _check_drive(scene: Arrangement) -> None:
             raise DriveError(
                 f"the drive is prescribed, and {name} = {value} depends on the coordinate {clash[0]}: give {name} as "
                 f"a function of {scene.t} alone, or give the parameter another name."
+            )
+        meant = [] if scene.t in value.free_symbols else [x for x in value.free_symbols if x.name in _TIMES]
+        if meant:
+            raise DriveError(
+                f"the time is {scene.t}, and {name} = {value} holds the Symbol {meant[0]} instead, so that it would "
+                f"not move: write xi and eta in one Symbol of time and pass it, as in Scene(..., t={meant[0]})."
             )
         rough = [x for x in value.atoms(*_ROUGH) if scene.t in x.free_symbols]
         if rough:

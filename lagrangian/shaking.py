@@ -28,8 +28,9 @@ from sympy.core.function import AppliedUndef
 from .angles import revolved
 from .arithmetic import Arithmetic
 from .errors import DriveError, QuantityError
+from .frozen import locked
 from .jets import FUNCTIONS, Jet, evaluate
-from .quantities import high_low, real_number, refuse_text, to_float
+from .quantities import high_low, real_number, refuse_text, refuse_unordered, to_float
 from .waves import NoWave, waves_of
 
 __all__ = ["Shaking", "shaking_of", "shaking_of_expressions"]
@@ -75,7 +76,8 @@ class Shaking:
         phase is right at all times, 1e9 s too, where rounding q would take 1e-7 q of it.
         """
         rows = [[to_float(q), *high_low(q / (2 * pi)), *map(to_float, sizes)] for q, *sizes in self.waves]
-        return np.array([to_float(x) for x in self.constant]), np.array(rows).reshape(-1, 7)
+        constant = np.array([to_float(x) for x in self.constant])
+        return locked(constant), locked(np.array(rows).reshape(-1, 7))
 
     def at(self, t: Any, arithmetic: Arithmetic | None = None) -> tuple[Any, Any]:
         """The pair at a time, as floats or in ``arithmetic``.  Raises DriveError where it has no finite real value."""
@@ -195,6 +197,7 @@ def _shown(t: Any) -> str:
 def shaking_of(given: Any) -> Shaking:
     """A pair of numbers, or a function of t that gives one.  Raises TextError, DriveError."""
     refuse_text(given, "support_acceleration")
+    refuse_unordered(given, "support_acceleration")
     if isinstance(given, Shaking):
         return given
     if callable(given):

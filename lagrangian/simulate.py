@@ -4,8 +4,8 @@ Every motion is computed three times: as asked, and twice to three more digits, 
 constants of the rods moved by one unit in the last place, this way and that, so that the differences show truncation,
 rounding and the rounding of the data, as the motion itself amplifies them.  The estimate is six times the largest
 difference so far; two of them are seldom both small by chance.  Where it exceeds the accuracy asked for, steps are
-made finer, down to the rounding of float64; what chaos then still takes is reported, never hidden: from 2 rad, 10 s, a
-double pendulum keeps 12 digits, ten rods 2.
+made finer, down to the rounding of float64; what chaos then still takes is reported, never hidden: from 2 rad, 10 s,
+two bobs keep 12 digits, ten keep 2, and five uniform rods none.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from math import ceil, log10
+from math import ceil, inf, log10, nan
 from numbers import Integral
 from typing import Any
 
@@ -29,11 +29,12 @@ from .digits import DigitRun, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .ensemble import Ensemble
 from .equations import EquationsOfMotion
-from .errors import DriveError, NotAQuantityError, NotASceneError, QuantityError, SceneError
+from .errors import DriveError, NotAQuantityError, NotASceneError, QuantityError, SceneError, printed
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
 from .pieces import BallPieces, FloatPieces
-from .quantities import quantity, refuse_mask, refuse_text
+from .quantities import quantity, refuse_mask, refuse_text, refuse_unordered, to_float
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
+from .states import within_floats
 from .swings import swing
 from .trajectories import Trajectories, chains_and_states
 from .trajectory import Trajectory
@@ -54,7 +55,8 @@ def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEqua
     """The motion from ``theta0, omega0`` at ``times[0]``, at all ``times``, as a :class:`Trajectory`.
 
     Many at once are followed one after the other, and given as :class:`Trajectories`: those of an :class:`Ensemble`, or
-    of one chain from many states, shape (chains, n).
+    of one chain from many states, shape (chains, n).  (:meth:`CompiledChain.acceleration` takes (n, chains): where
+    there are as many chains as rods, nothing tells one from the other.)
 
     Parameters
     ----------
@@ -85,9 +87,10 @@ def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEqua
 
     Speed and accuracy
     ------------------
-    Ten seconds from 2 rad: 3 ms for two rods (12 digits are left), 10 ms for five (8), 30 ms for ten (2), after a
-    few seconds of translation once per machine.  Two rods with 28 digits: 0.12 s, after 6 s of translation; with 50
-    digits 10 s.  A trajectory never claims what it has not: see ``trajectory.error``, ``.predictable_until`` and
+    Ten seconds from 2 rad: 3 ms for two bobs (12 digits are left), 10 ms for five (8), 30 ms for ten (2), after a
+    few seconds of translation once per machine.  These are true errors; the estimate claims two digits less.
+    Of uniform rods two keep 9 digits, and five none.  Two bobs with 28 digits: 0.12 s, after 6 s of translation; with
+    50 digits 10 s.  A trajectory never claims what it has not: see ``trajectory.error``, ``.predictable_until`` and
     ``.verdict``.
 
     >>> chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], upright=False)
@@ -195,7 +198,7 @@ def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times:
     Where the support has no Taylor series, SciPy's solver runs again: with a 30th of the tolerance, or 30 times that
     where it is as fine as SciPy goes, and with the constants of the rods moved.
     """
-    first, rates = (np.array([float(x) for x in part]) for part in (theta, omega))
+    first, rates = (np.array([within_floats(x, "a state") for x in part]) for part in (theta, omega))
     tolerance = max(FINEST_SCIPY, accuracy * 1e-2)
     if method == "linear":
         run = _run(swing(chain, first, rates, times))
@@ -281,10 +284,10 @@ def _system(system: Any) -> tuple[CompiledChain, Any]:
 
 def _accuracy(asked: Any) -> float:
     exact = quantity(asked, "accuracy")
-    if not exact.is_number or not exact > 0:
-        raise QuantityError(f"an accuracy is a positive number, and this one is {exact}: give the error in rad that "
-                            f"may remain.")
-    found = float(exact)
+    found = to_float(exact) if exact.is_number else nan
+    if not exact.is_number or not exact > 0 or not found < inf:
+        raise QuantityError(f"an accuracy is a positive number, and this one is {printed(exact)}: give the error in "
+                            f"rad that may remain.")
     if found < TINY:
         power = int(floor(log(exact, 10)))
         raise QuantityError(f"an accuracy is a float, and this one, 1e{power}, is below all of them: say how many "
@@ -296,9 +299,10 @@ def _digits(asked: Any) -> int | None:
     if asked is None:
         return None
     if isinstance(asked, bool) or not isinstance(asked, Integral) or asked < 1:
-        raise QuantityError(f"digits is {asked!r}: give how many decimal digits to compute with, such as 30.")
+        raise QuantityError(f"digits is {printed(asked, repr)}: give how many decimal digits to compute with, such "
+                            f"as 30.")
     if int(asked) > MOST_DIGITS:
-        raise QuantityError(f"digits is {asked}: give at most {MOST_DIGITS}; orders grow with them.")
+        raise QuantityError(f"digits is {printed(asked)}: give at most {MOST_DIGITS}; orders grow with them.")
     return int(asked)
 
 
@@ -308,7 +312,7 @@ def _times(times: Any) -> tuple[Any, Any]:
     given: Any = _plain_times(times)
     if given is None:
         given = _quantities(times, "times", "a list of times, the first of which is that of theta0")
-    found = np.array([float(x) for x in given]) if isinstance(given, list) else given
+    found = np.array([within_floats(x, "times") for x in given]) if isinstance(given, list) else given
     steps = np.diff(found)
     if not len(found) or not ((steps >= 0).all() or (steps <= 0).all()):
         raise SceneError(f"times must grow, or shrink for the motion backwards, and be at least one, but they are "
@@ -328,10 +332,11 @@ def _plain_times(times: Any) -> Any:
 def _quantities(values: Any, name: str, wanted: str) -> list[Any]:
     """Exact numbers from any sequence of numbers; raises SceneError, saying what is wanted, where it is none."""
     refuse_text(values, name)
+    refuse_unordered(values, name)
     try:
         entries = list(values)
     except TypeError:
-        raise SceneError(f"{name} is {values!r}: give {wanted}.") from None
+        raise SceneError(f"{name} is {printed(values, repr)}: give {wanted}.") from None
     found = [quantity(x, f"{name}[{k}]") for k, x in enumerate(entries)]
     symbols = [x for x in found if not x.is_number]
     if symbols:

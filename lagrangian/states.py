@@ -5,15 +5,16 @@ A state of n rods has shape (n,), and the states of many chains with the same ro
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
 
-from .errors import SceneError
-from .quantities import real_number, refuse_mask, refuse_text, to_float
+from .errors import QuantityError, SceneError, printed
+from .quantities import real_number, refuse_mask, refuse_text, refuse_unordered, to_float
 
 __all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "shown",
-           "why_no_answer"]
+           "why_no_answer", "within_floats"]
 
 FLOAT64 = np.dtype(np.float64)
 PLAIN_TIMES = (float, int, np.float64)
@@ -28,7 +29,7 @@ def is_plain(t: Any, theta: Any, omega: Any) -> bool:
 
 def float_time(t: Any) -> float:
     """A time as a float; raises as :func:`lagrangian.quantities.real_number`."""
-    return t if type(t) in PLAIN_TIMES else to_float(real_number(t, "t"))
+    return t if type(t) in PLAIN_TIMES else within_floats(real_number(t, "t"), "t")
 
 
 def floats(values: Any, name: str) -> Any:
@@ -37,13 +38,23 @@ def floats(values: Any, name: str) -> Any:
         return values
     refuse_text(values, name)
     refuse_mask(values, name)
+    refuse_unordered(values, name)
     try:
         array = np.asarray(values)
     except ValueError:  # rows of unequal length
         array = np.asarray(values, dtype=object)
     if array.dtype.kind not in "fiu":
-        array = np.array([to_float(real_number(x, name)) for x in array.flat]).reshape(array.shape)
+        array = np.array([within_floats(real_number(x, name), name) for x in array.flat]).reshape(array.shape)
     return np.asarray(array, FLOAT64, order="C")
+
+
+def within_floats(exact: Any, name: str) -> float:
+    """:func:`lagrangian.quantities.to_float` of an exact number; QuantityError where floats do not reach so far."""
+    found = to_float(exact)
+    if abs(found) == inf:
+        raise QuantityError(f"{name} holds {printed(exact)}, which is beyond the range of float64: change the units, "
+                            f"or compute with mpmath numbers.")
+    return found
 
 
 def float_state(values: Any, name: str, n: int) -> Any:

@@ -11,7 +11,8 @@ import numpy as np
 
 from .ensemble import Ensemble, place
 from .errors import SceneError
-from .trajectory import Trajectory, labelled, locked
+from .frozen import locked
+from .trajectory import Trajectory, labelled
 
 __all__ = ["Trajectories", "chains_and_states"]
 

@@ -11,10 +11,11 @@ from sympy import Float, latex
 
 from .animation import animate
 from .errors import QuantityError
+from .frozen import locked
 from .optional import optional
 from .plotting import plot
 
-__all__ = ["Trajectory", "labelled", "locked"]
+__all__ = ["Trajectory", "labelled"]
 
 ARRAYS = ("times", "theta", "omega", "turns", "wrapped", "energy", "error")
 
@@ -98,7 +99,8 @@ class Trajectory:
         if self.accurate:
             return f"Every angle is within about {worst:.1e} rad of the true motion; {self.accuracy:.1e} was asked for."
         remedy = ("Ask for more digits, as in simulate(..., digits=40), to see further."
-                  if self.method.startswith("taylor") else "Choose method='taylor', with digits=40 to see further.")
+                  if self.method.startswith("taylor")
+                  else "Choose method='taylor', and digits=40 with it where that is not enough.")
         return (f"From t = {float(self.predictable_until):.6g} on the accuracy asked for, {self.accuracy:.1e} rad, is "
                 f"lost: errors grow to {worst:.1e} rad.  {remedy}")
 
@@ -162,10 +164,3 @@ def labelled(motion: Any, members: Sequence[Trajectory], axes: tuple[str, ...]) 
     notes = {"method": "; ".join(sorted({one.method for one in members})), "accuracy": members[0].accuracy,
              "verdict": motion.verdict, "model": "; ".join(sorted({one.chain.model for one in members}))}
     return xarray.Dataset(variables, {axis: places[axis] for axis in axes}, notes)
-
-
-def locked(array: Any) -> Any:
-    """The same array, read only."""
-    found = np.asarray(array).view()
-    found.flags.writeable = False
-    return found

@@ -468,6 +468,21 @@ def test_a_chain_does_not_change():
                 joints[...] = 0
 
 
+@pytest.mark.parametrize("show", [
+    lambda chain: chain.rods,
+    lambda chain: chain.bobs,
+    lambda chain: chain.damping,
+    lambda chain: chain.support.floats[0],
+    lambda chain: Ensemble([[1, 1]] * 3, 1, 1, 1, damping=[1, 1]).damping,
+    lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1]).theta,
+])
+def test_what_a_chain_shows_of_itself_cannot_be_written_to(show):
+    """Whoever scales what he was shown would change the accelerations of the chain."""
+    with pytest.raises(ValueError, match="read-only"):
+        show(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], damping=[1, 1]))[0] = 77
+
+
+
 @pytest.mark.parametrize("eta", [I * cos(t), (1 + I) * t**2, cos(t) + I * sin(2 * t), I * t])
 def test_a_support_moves_in_real_space(eta):
     """Waves and powers with complex numbers, which are real in no time."""

@@ -138,3 +138,10 @@ def test_compiled_equations_can_be_sent_to_another_process(target):
 
     assert again.target == target and repr(again) == repr(compiled)
     assert (again.acceleration(*state) == compiled.acceleration(*state)).all()
+
+
+def test_compiled_equations_do_not_change():
+    """Nor do the chains that they belong to."""
+    compiled = compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)], gravity=10)))
+    with pytest.raises(AttributeError, match="do not change"):
+        compiled.chain = None

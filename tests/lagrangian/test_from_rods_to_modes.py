@@ -1,9 +1,13 @@
 """What a user meets on the way from rods to P, tau, period and to normal modes."""
 
+from configparser import ConfigParser
+from pathlib import Path
+
 import mpmath
 import pytest
 from sympy import CRootOf, Matrix, Rational, Symbol, cos, count_ops, exp, expand, pi, sin, sqrt, symbols
 
+import lagrangian
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize, normal_modes
 
 m, l, g, t, epsilon, omega0, h, v = symbols("m l g t epsilon omega0 h v")
@@ -14,6 +18,14 @@ rod = Rod.uniform(m, l)
 def linear(rods, support=driven, **options):
     """The linear equations of ``rods``, driven vertically unless said otherwise."""
     return linearize(euler_lagrange(Scene(rods, support, **options)))
+
+
+def test_the_package_says_its_version():
+    """That of the distribution."""
+    settings = ConfigParser()
+    settings.read(Path(__file__).parents[2] / "setup.cfg")
+
+    assert lagrangian.__version__ == settings["metadata"]["version"]
 
 
 def test_double_rod_has_the_articles_first_order_matrix():

@@ -699,3 +699,11 @@ def test_what_cannot_be_simulated_is_refused(arguments, options, error, words):
         simulate(*arguments, **options)
 
     assert all(word in str(refusal.value) for word in words)
+
+
+def test_the_verdict_on_small_swings_names_what_is_enough():
+    """Taylor steps in float64 first: the error of the linear model is not one of rounding."""
+    linear, taylor = (simulate(CHAIN, [0.1, 0.1], [0, 0], [0, 1], method=method) for method in ("linear", "taylor"))
+
+    assert "method='taylor', and digits=40 with it where that is not enough" in linear.verdict
+    assert taylor.accurate and not linear.accurate

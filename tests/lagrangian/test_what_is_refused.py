@@ -11,6 +11,7 @@ from sympy import Abs, Function, Heaviside, I, Matrix, Rational, Symbol, besselj
 
 from lagrangian import (
     CompiledChain,
+    Crossing,
     DriveError,
     Ensemble,
     InhomogeneousError,
@@ -78,13 +79,16 @@ def linear(rods=(rod,), support=driven, **options):
     (lambda: Scene([rod], gravity=oo), QuantityError, "gravity"),
     (lambda: Scene([rod], gravity=g + cos(t)), QuantityError, "eta''"),
     (lambda: Scene([Rod.uniform(t, l)]), QuantityError, "constant"),
-    (lambda: Scene([Rod.uniform(Symbol("theta1"), l)]), QuantityError, "theta1"),
+    (lambda: Scene([Rod.uniform(Symbol("theta1"), l)]), QuantityError, "theta1, the name of a coordinate"),
     (lambda: Scene([rod], Support(eta=Symbol("theta1"))), DriveError, "theta1"),
     (lambda: Scene([rod], Support(xi=Function("theta1")(t))), DriveError, "theta1"),
     (lambda: Scene([rod], Support(eta=Abs(cos(t)))), DriveError, "twice"),
     (lambda: Scene([rod], Support(eta=Heaviside(t))), DriveError, "twice"),
     (lambda: Scene([rod], Support(eta=cos(t)), t=Symbol("t", real=True)), DriveError, "assumptions"),
     (lambda: Scene([rod], Support(eta=l * cos(omega0))), DriveError, "which is the time"),
+    (lambda: Scene([rod], driven, t=Symbol("tau")), DriveError, "pass it, as in Scene(..., t=t)"),
+    (lambda: Scene([rod], Support(eta=cos(Symbol("tau"))), t=t), DriveError, "the time is t"),
+    (lambda: Scene([rod], Support(cos(Symbol("tau")), cos(t))), DriveError, "xi = cos(tau)"),
     (lambda: Support(eta=I), QuantityError, "real"),
     (lambda: Support(eta=nan), QuantityError, "finite"),
     (lambda: euler_lagrange(rod), NotASceneError, "Scene"),
@@ -101,8 +105,10 @@ def linear(rods=(rod,), support=driven, **options):
     (lambda: linear(support=Support(eta=cos(t**2))).first_order(1), NotPeriodicError, "t**2"),
     (lambda: linear().first_order(0), QuantityError, "omega0"),
     (lambda: linear().first_order(t), QuantityError, "omega0"),
-    (lambda: linear([Rod.uniform(Symbol("tau"), l)]).first_order(omega0), NameClashError, "tau"),
-    (lambda: linear([Rod.uniform(m, l)], gravity=Symbol("v")).first_order(omega0), NameClashError, "v"),
+    (lambda: linear([Rod.uniform(Symbol("tau"), l)]).first_order(omega0), NameClashError, "the scene's tau."),
+    (lambda: linear([Rod.uniform(m, l)], gravity=Symbol("v")).first_order(omega0), NameClashError, "v, or pass dim"),
+    (lambda: linear().first_order(Symbol("omega0", positive=True)), NameClashError, "share the name"),
+    (lambda: normal_modes(linear()).mathieu(2 * Symbol("omega0", real=True)), NameClashError, "share the name"),
     (lambda: linear([rod, Rod.bob(m, l)]).divided(), SceneError, "equal"),
     (lambda: linear().divided(0), QuantityError, "not 0"),
     (lambda: normal_modes(linear([rod] * 2, springs=[1, 1])), NotDecoupledError, "function of time"),
@@ -139,6 +145,15 @@ def test_text_is_never_evaluated(ask):
     """TextError wherever mathematics is expected."""
     with pytest.raises(TextError, match="never evaluated"):
         ask()
+
+
+def test_a_support_may_stay_at_a_height_without_a_number():
+    """Nor is a parameter taken for the time that stands beside the time."""
+    tau = Symbol("tau")
+    still = linear(support=Support(l, epsilon), t=tau)
+
+    assert still.stiffness == linear(support=Support()).stiffness
+    assert Scene([rod], Support(eta=cos(t / tau))).support_acceleration[1] == -cos(t / tau) / tau**2
 
 
 def test_numbers_of_every_kind_are_exact():
@@ -190,6 +205,52 @@ def test_masks_are_not_lost(ask):
         ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
 
 
+BIG = 10**5000
+
+
+@pytest.mark.parametrize(("ask", "words"), [
+    (lambda chain: Rod.uniform(-BIG, 2), "mass is a number of too many digits"),
+    (lambda chain: Rod(1, 1, BIG, 2), "center = a number of too many digits"),
+    (lambda chain: Scene([rod], damping=[-BIG]), "a number of too many digits"),
+    (lambda chain: Scene([rod]).compile({m: -BIG, l: 1, g: 1}), "a number of too many digits"),
+    (lambda chain: CompiledChain([1], [1], [BIG], [1]), "a number of too many digits"),
+    (lambda chain: CompiledChain([1], [1], [1], [1], damping=[-BIG]), "a number of too many digits"),
+    (lambda chain: Crossing(-BIG, 0), "a number of too many digits"),
+    (lambda chain: normal_modes(linear(), digits=BIG), "at most 100000"),
+    (lambda chain: normal_modes(linear(), digits=-BIG), "a number of too many digits"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], digits=BIG), "at most 100000"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], accuracy=BIG), "positive number.*too many"),
+    (lambda chain: simulate(chain, [1, BIG], [0, 0], [0, 1]), "beyond the range of float64"),
+    (lambda chain: simulate(chain, [1, 1], [0, BIG], [0, 1], method="DOP853"), "beyond the range of float64"),
+    (lambda chain: simulate(chain, [1, 1], [0, 0], [0, BIG]), "beyond the range of float64"),
+    (lambda chain: chain.acceleration(0, [1, BIG], [0, 0]), "beyond the range of float64"),
+    (lambda chain: Ensemble([[BIG, 1]], 1, 1, 1), "beyond the range of float64"),
+])
+def test_integers_that_python_does_not_print_are_refused_by_name(ask, words):
+    """And not by Python's ValueError of 4300 digits, or as an infinity that nobody gave."""
+    with pytest.raises(QuantityError, match=words):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
+@pytest.mark.parametrize("ask", [
+    lambda chain: simulate(chain, {5: 1, 7: 2}, [0, 0], [0, 1]),
+    lambda chain: simulate(chain, [1, 1], {5, 7}, [0, 1]),
+    lambda chain: simulate(chain, [1, 1], [0, 0], {0: 0, 1: 1}),
+    lambda chain: chain.acceleration(0, {5: 1, 7: 2}, [0, 0]),
+    lambda chain: CompiledChain({1: 5, 2: 3}, [1, 1], [1, 1], [1, 1]),
+    lambda chain: CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], support_acceleration={1, 2}),
+    lambda chain: CompiledChain([1, 1], [1, 1], [1, 1], [1, 1], springs={1, 2}),
+    lambda chain: Ensemble({1: 5, 2: 3}, 1, 1, 1),
+    lambda chain: Scene({rod: 1}),
+    lambda chain: Scene([rod], damping={0: 1}),
+    lambda chain: linearize(euler_lagrange(Scene([rod] * 2)), about={0, pi}),
+])
+def test_neither_the_keys_of_a_mapping_nor_a_set_are_a_list(ask):
+    """Angles given by name, ``{theta1: 0}``, would be the names; sets have no first and last."""
+    with pytest.raises(NotAQuantityError, match="no order here"):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
 def test_numbers_of_flint_are_numbers():
     """Rationals and integers, as lengths and as angles."""
     third = flint.fmpq(1, 3)
@@ -204,6 +265,14 @@ def test_numbers_of_flint_are_numbers():
     (lambda chain: chain.acceleration(0, np.array([1, 2], dtype="m8[s]"), [0, 0]), "unit of time"),
     (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], progress=3), "progress is 3"),
     (lambda chain: simulate(chain, [1, 1], [0, 0], [0, 1], digits=10**9), "at most 100000"),
+    (lambda chain: Scene([rod], driven).compile({m: 1, l: 1, g: 10, epsilon: 0.1, omega0: 3, t: 1}),
+     "time t is no parameter.*value 1"),
+    (lambda chain: compile_equations(euler_lagrange(Scene([rod], driven)), {t: 0.5}), "time t is no parameter"),
+    (lambda chain: Scene([rod], driven).compile({m: [1, 2], l: 1, t: [0, 1]}), "time t is no parameter"),
+    (lambda chain: Scene([rod]).compile({Symbol("m", positive=True): 1, l: 1, g: 10}), "m is left .*share the name"),
+    (lambda chain: Scene([rod]).compile({m: [1, 2], l: 1, Symbol("g", real=True): 10}), "g is left .*share the name"),
+    (lambda chain: compile_equations(euler_lagrange(Scene([rod])), {m: 1, l: 1, Symbol("g", real=True): 10}),
+     "g is left .*share the name"),
     (lambda chain: drum().acceleration(0.5, [1], [0]), "besselj.*target='mpmath'"),
     (lambda chain: compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)] * 2, gravity=10))).acceleration(
         0, [1, 1], [1e200, 0]), "beyond float64"),
