@@ -14,7 +14,8 @@ here the a-priori one at every point: ``sum over k > n of (Pbar T)**k / k!``, wh
 Where the error is more than the margin the pixel is undecided: truncation is visible, not hidden.  The error of
 coupled and damped charts is an estimate (the matrix's bound times its eigenvectors' condition), and so is that of
 modes: their parameters, ``-mu/v**2``, are rounded, which is taken to move the trace by ``2**-46`` of its size, more
-than it does unless large ones cancel; proofs come from ``certify``.
+than it does unless large ones cancel; proofs come from ``certify``.  Where rho of coupled systems coincide to within
+the error, a point is undecided unless their signatures (Krein) keep the multipliers on the circle.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ from fastpicard.vectorise import Evaluator
 
 Array = Any
 RESULTS = ("trace", "margin", "error", "verdict")
-MOST = 10**8  # points of a chart in memory, some ten floats each while it is computed
+MOST = 10**8  # points of a chart in memory, some ten floats each while it is computed; coupled ones take far more
 
 
 def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, Any],
@@ -130,12 +131,12 @@ def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     """Trace, margin, error and verdict at the points of a grid, shape (4, up, across)."""
     np = numpy()
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
-    paired, _ = pairs(problem.F.P)
+    paired, form = pairs(problem.F.P)
     scalar = _is_scalar(problem)
     compute = _by_matrix if not scalar else _by_factors if _is_mirrored(problem.F.P) else _by_trace
     best: list[Array] = []
     for member in problem.members:
-        found = list(compute(problem, member, grid, paired))
+        found = list(compute(problem, member, grid, paired, form))
         if best:
             worse = found[1] < best[1]
             found = [np.where(worse, new, old) for new, old in zip(found, best, strict=True)]
@@ -187,7 +188,7 @@ def _evaluated(problem: Charted, member: Member, collapsed: Collapsed, grid: lis
     return values, bounds
 
 
-def _by_trace(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
+def _by_trace(problem: Charted, member: Member, grid: list[Array], *_: Any) -> tuple[Array, Array, Array]:
     np = numpy()
     values, bounds = _evaluated(problem, member, problem.F.collapsed_trace, grid)
     trace = values[0]
@@ -195,7 +196,7 @@ def _by_trace(problem: Charted, member: Member, grid: list[Array], paired: bool)
     return trace, np.where(np.isnan(trace), np.nan, 2 - abs(trace)), error
 
 
-def _by_factors(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
+def _by_factors(problem: Charted, member: Member, grid: list[Array], *_: Any) -> tuple[Array, Array, Array]:
     """``trace = 2 + 4 B C`` from half the period: half the terms, and a far smaller remainder."""
     np = numpy()
     half = half_period(problem.F)
@@ -229,12 +230,33 @@ def _amplitudes(problem: Charted, member: Member, grid: list[Array]) -> Array:
     return bound
 
 
-def _margin_of_pairs(multipliers: Array, moved: Array) -> tuple[Array, Array]:
+def _of_one_signature(multipliers: Array, vectors: Array, form: Any) -> Array:
+    """Whether multipliers number i and j on the circle, or i and the conjugate of j, would keep each other there.
+
+    They do where ``i v* W v`` is definite on what their eigenvectors span (Krein), for a symplectic form W.
+    """
+    np = numpy()
+    size = multipliers.shape[1]
+    if form is None:
+        return np.zeros((len(multipliers), size, size), dtype=bool)
+    W = np.array([int(x.p) / int(x.q) for x in form.entries()]).reshape(size, size)
+    left = 1j * vectors.conj().transpose(0, 2, 1) @ W
+    grams = left @ vectors, left @ vectors.conj()
+    own = np.diagonal(grams[0], axis1=1, axis2=2).real
+    product = own[:, :, None] * own[:, None, :]
+    alike, opposite = (sign * product > 1e-12 * abs(W).max() ** 2 + (1 + 1e-6) * abs(gram) ** 2
+                       for sign, gram in zip((1, -1), grams, strict=True))
+    far = abs(multipliers[:, :, None] - multipliers[:, None, :]) > abs(
+        multipliers[:, :, None] - multipliers[:, None, :].conj())
+    return np.where(far, opposite, alike)
+
+
+def _margin_of_pairs(multipliers: Array, moved: Array, of_one_signature: Array) -> tuple[Array, Array]:
     """The margin of ``rho = lambda + 1/lambda``, and its error, where multipliers may have moved so far.
 
     Values of rho are real or come with their conjugates.  One that may be real is, unless that of another pair is so
-    near that both may be off the real line: then nothing is known.  Of a pair the multiplier inside the circle is left
-    out, as its reciprocal is known better.
+    near that both may be off the real line, and their signatures do not forbid it: then nothing is known.  Of a pair
+    the multiplier inside the circle is left out, as its reciprocal is known better.
     """
     np = numpy()
     outer = abs(multipliers) >= 1 - moved[:, None]
@@ -248,7 +270,8 @@ def _margin_of_pairs(multipliers: Array, moved: Array) -> tuple[Array, Array]:
     distance[:, itself] = np.inf
     others = outer[:, None, :] & ~itself & (distance > distance.min(axis=2, keepdims=True))
     near = abs(rho[:, None, :] - rho.conj()[:, :, None]) <= slack[:, None, :] + slack[:, :, None]
-    unknown = (real[:, :, None] & others & near).any(axis=(1, 2))
+    unknown = (real[:, :, None] & others & near & ~of_one_signature).any(axis=(1, 2))
+    error = np.where(outer.any(axis=1), error, np.inf)
     return margin, np.where(unknown & (margin > 0), np.maximum(error, margin), error)
 
 
@@ -277,7 +300,8 @@ def _tail(z: Array, n: int) -> Array:
     return sums[np.searchsorted(table, z)]
 
 
-def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool) -> tuple[Array, Array, Array]:
+def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool,
+               form: Any) -> tuple[Array, Array, Array]:
     np = numpy()
     size = problem.F.shape[0]
     values, bounds = _evaluated(problem, member, problem.F.collapsed, grid)
@@ -290,7 +314,7 @@ def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool
         rounding = 2.0**-48 * abs(matrices).max(axis=(1, 2))
         moved = (bounds.max(axis=0) + _remainder(problem, member, grid) + rounding) * size * np.minimum(condition, 1e8)
         if paired:
-            margin, error = _margin_of_pairs(multipliers, moved)
+            margin, error = _margin_of_pairs(multipliers, moved, _of_one_signature(multipliers, vectors, form))
         else:
             margin, error = 1 - abs(multipliers).max(axis=1), moved
     trace = np.trace(matrices, axis1=1, axis2=2)

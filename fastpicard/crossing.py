@@ -86,8 +86,12 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
             center = [(c - move[k, 0]).mid() for k, c in enumerate(center)]
             if all(abs(move[k, 0]) < arb(2) ** -120 for k in (0, 1)):
                 break
-        slacks = [_wide_remainder(part, {**exact, **dict(zip(names, center, strict=True))}, names) for part in (f, g)]
-        for exponent in EXPONENTS:
+        values = {**exact, **dict(zip(names, center, strict=True))}
+        radius = min(_radius(part, values, names) for part in (f, g))
+        exponents = [e for e in EXPONENTS if arb(2) ** e <= radius / 4]
+        reach = radius + arb(2) ** max(exponents, default=EXPONENTS[0])
+        slacks = [_wide_remainder(part, values, names, reach) / radius for part in (f, g)]
+        for exponent in exponents:
             box = [c + arb(0, arb(2) ** exponent) for c in center]
             value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slacks)
             _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slacks)
@@ -109,31 +113,32 @@ def _both(f: Boundary, g: Boundary, names: tuple[Symbol, Symbol], values: dict[A
     return arb_mat([[row[0]] for row in rows]), arb_mat([row[1:] for row in rows])
 
 
-def _wide_remainder(part: Boundary, values: dict[Any, Any], names: tuple[Symbol, Symbol]) -> Any:
-    """The remainder of a function and of its derivatives in all boxes that are tried.
-
-    By Cauchy's inequality derivatives are at most the remainder for complex parameters within ``r`` of the box, over
-    ``r``: 1, or less where a pole is near.
-    """
+def _radius(part: Boundary, values: dict[Any, Any], names: tuple[Symbol, Symbol]) -> Any:
+    """How far parameters may be complex around the boxes that are tried: 1, or less where a pole is near."""
     F = part._F
     if symbols_of(F.length) & set(names):
         raise BadInputError(f"curves cross where the period is one for all parameters, but it is {F.period}.  Measure "
                             "time in units of it.")
-    powers = {e for row in F.P.rows for modes in row for _, angle, own in modes
-              for m in (own, *dict(angle[0]), *dict(angle[1])) for g, e in m if expression_of(g) in names}
-    point = Point(arb(0), values)
+    powers = {(expression_of(g), e) for row in F.P.rows for modes in row for _, angle, own in modes
+              for m in (own, *dict(angle[0]), *dict(angle[1])) for g, e in m}
     sizes = {s: abs(exact_ball(values[s])) for s in names}
-    radius = min([arb(1), *((x / 2).mid() for x in sizes.values() if any(e < 0 or e != int(e) for e in powers))])
+    radius = min([arb(1), *((sizes[s] / 2).mid() for s, e in powers if s in names and (e < 0 or e != int(e)))])
     if not radius > 0:
         raise BadInputError(f"P must be smooth where curves cross, but it has a pole or a root at "
                             f"{dict(zip(names, map(str, sizes.values()), strict=True))}.  Start elsewhere.")
-    wide = {s: x + arb(0, radius + arb(2) ** max(EXPONENTS)) for s, x in sizes.items()}
+    return radius
+
+
+def _wide_remainder(part: Boundary, values: dict[Any, Any], names: tuple[Symbol, Symbol], reach: Any) -> Any:
+    """The remainder of a function for complex parameters as far away; derivatives follow by Cauchy's inequality."""
+    F, point = part._F, Point(arb(0), values)
+    wide = {s: abs(exact_ball(values[s])) + arb(0, reach) for s in names}
     period = F.at(values)[1] / (2 if part._half else 1)
     waves = {(i, j): [(arb(0), sum((_largest(mode, f, point, wide, period) for mode, f in modes.items()), arb(0)),
                        arb(0))]
              for i, row in enumerate(F.P.rows) for j, modes in enumerate(row) if modes}
     bound = a_priori(Harmonics(F.shape[0], waves), period, F.n)
-    return max((entry.upper() for entry in bound.entries()), default=arb(0)) / radius
+    return max((entry.upper() for entry in bound.entries()), default=arb(0))
 
 
 def _largest(mode: Any, f: Any, point: Point, wide: dict[Symbol, Any], period: Any) -> Any:

@@ -75,12 +75,15 @@ def zero(function: Function, ends: tuple[Any, Any], tol: Any) -> tuple[Any, int]
     if not f * g <= 0 or f == 0 == g:
         raise BadInputError(f"the function must change its sign between the ends {float(lo)} and {float(hi)}, but "
                             f"it is {f.str(5)} and {g.str(5)} there.  Choose ends on both sides of the boundary.")
+    for end, at_end in ((lo, f), (hi, g)):
+        if at_end == 0:
+            return end.mid(), 2
     rising, count, moved = bool(g > 0), 2, 2 * (hi - lo)
     here, value, slope = (lo, f, df) if abs(f / df) < abs(g / dg) else (hi, g, dg)
     while count < MOST - 4 * float(tol.log()):
         step = value / slope if not slope.contains(0) else (hi - lo) * 2
         new = (here - step).mid()
-        if not (new > lo and new < hi and 2 * abs(step) < moved):  # Newton's steps halve at least, or it does
+        if not (lo <= new <= hi and 2 * abs(step) < moved):  # Newton's steps halve at least, or it does
             new = ((lo + hi) / 2).mid()
         moved = abs(new - here)
         value, slope = resolved(function, [new], reach, tol / 16)

@@ -31,6 +31,7 @@ from fastpicard.constants import exact_constant
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, namesake, printed
 from fastpicard.modes import COS, Key, Linear, Modes
 from fastpicard.precision import working
+from fastpicard.reading import plain
 from fastpicard.ring import Monomial, Polynomial, expression_of, rational, symbols_of
 
 EXTRA_BITS = 4096  # beyond the digits asked for, before a value is taken to be zero
@@ -59,7 +60,7 @@ def exact_number(value: Any, what: str) -> Any:
     BadInputError
         for nan and infinities.
     """
-    value = value.item() if getattr(value, "shape", None) == () else value
+    value = plain(value)
     if isinstance(value, mpmath.mp.constant):
         return exact_constant(value, what)
     if isinstance(value, arb):

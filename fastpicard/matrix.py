@@ -13,7 +13,7 @@ import sympy
 from sympy import ImmutableMatrix, Symbol
 
 from fastpicard import modes as algebra
-from fastpicard.errors import BadInputError, BadTypeError, ShapeError, printed
+from fastpicard.errors import BadInputError, BadTypeError, FastPicardError, ShapeError, printed
 from fastpicard.evaluate import Values, check_digits, evaluate, free_symbols, numpy
 from fastpicard.latex import shown, summary
 from fastpicard.modes import Modes
@@ -41,7 +41,12 @@ class AsMatrix(ABC):
     def _latex(self, printer: Any) -> str:
         return str(printer.doprint(self.as_matrix()))
 
+    def __neg__(self) -> Any:
+        return -self.as_matrix()
+
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        if copy is False:
+            raise ValueError("an array of a matrix of series is a new one.  Leave copy=False out.")
         return numpy().array(self.as_matrix().tolist(), dtype=dtype)
 
 
@@ -99,7 +104,12 @@ class SeriesMatrix(AsMatrix):
             raise BadInputError(f"both matrices must have the same time, but they have {self.t} and {other.t}.  "
                                 "Substitute one for the other.")
 
+    def __neg__(self) -> SeriesMatrix:
+        return self.map(algebra.negative)
+
     def __add__(self, other: SeriesMatrix) -> SeriesMatrix:
+        if isinstance(other, sympy.MatrixBase):
+            return NotImplemented
         self._check(other)
         if self.shape != other.shape:
             raise ShapeError("matrices can be added if their shapes agree, but they are "
@@ -108,6 +118,8 @@ class SeriesMatrix(AsMatrix):
         return SeriesMatrix(rows, self.t)
 
     def __matmul__(self, other: SeriesMatrix) -> SeriesMatrix:
+        if isinstance(other, sympy.MatrixBase):
+            return NotImplemented
         self._check(other)
         if self.shape[1] != other.shape[0]:
             raise ShapeError("matrices can be multiplied if inner sizes agree, but they are "
@@ -225,6 +237,8 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
     if callable(P) and not isinstance(P, sympy.MatrixBase):
         try:
             P = P(t)
+        except FastPicardError:
+            raise
         except (TypeError, AttributeError) as error:
             raise BadTypeError(f"P must be a matrix, or a function of a SymPy Symbol, but P({t}) ends with: {error}  "
                                "Write its cosines as sympy.cos.") from error
@@ -241,17 +255,20 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
 
 def _series(rows: Any, t: Symbol) -> Rows:
     """Entries in the engine's form, read where they are expressions."""
-    if isinstance(rows, tuple) and all(isinstance(modes, Mapping) for row in rows for modes in row):
+    if isinstance(rows, tuple) and rows and all(isinstance(modes, Mapping) for row in rows for modes in row):
         return rows
-    read_rows = tuple(tuple(read(e, as_time(t)) for e in row) for row in _entries(rows, "a matrix of series"))
-    if len({len(row) for row in read_rows} - {0}) != 1:
-        raise ShapeError(f"the rows of a matrix must have one length, but these have {[len(row) for row in read_rows]}."
-                         "  Fill them up.")
-    return read_rows
+    entries = _entries(rows, "a matrix of series")
+    lengths = [len(row) for row in entries]
+    if len(set(lengths)) != 1 or 0 in lengths:
+        raise ShapeError(f"the rows of a matrix must have one length from 1 up, but these have {lengths}.  Fill them "
+                         "up.")
+    return tuple(tuple(read(e, as_time(t)) for e in row) for row in entries)
 
 
 def _entries(matrix: Any, what: str) -> list[list[Any]]:
     matrix = plain(matrix)
+    if isinstance(matrix, list | tuple):
+        matrix = [plain(row) for row in matrix]
     if isinstance(matrix, str):
         raise BadTypeError(f"{what} must be a SymPy Matrix, but it is the text {matrix!r}, which is never evaluated.  "
                            "Build it from sympy.Symbol objects.")
@@ -276,8 +293,9 @@ def _read_entry(entry: Any, t: Symbol, i: int, j: int) -> Modes:
 def as_list(x0: Any) -> Any:
     """The components of a column or row of SymPy or NumPy, or of nested lists of that shape."""
     x0 = list(x0) if isinstance(x0, sympy.MatrixBase) and 1 in x0.shape else plain(x0)
-    nested = isinstance(x0, list | tuple) and all(isinstance(row, list | tuple) and len(row) == 1 for row in x0)
-    return [row[0] for row in x0] if nested else x0
+    if not isinstance(x0, list | tuple) or not all(isinstance(row, list | tuple) for row in x0):
+        return x0
+    return list(x0[0]) if len(x0) == 1 else [row[0] for row in x0] if all(len(row) == 1 for row in x0) else x0
 
 
 def read_vector(x0: Any, t: Symbol, size: int) -> tuple[Modes, ...]:

@@ -26,7 +26,7 @@ from sympy import Basic, Expr, ImmutableMatrix, Matrix, Symbol
 from sympy.logic.boolalg import Boolean
 
 from fastpicard.collapsed import Collapsed
-from fastpicard.errors import BadInputError, BadTypeError, printed
+from fastpicard.errors import BadInputError, BadTypeError, ShapeError, printed
 from fastpicard.evaluate import Values
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
@@ -99,7 +99,7 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     s = sympy.Dummy("s")
     x = Matrix(start)
     for _ in range(check_order(n)):
-        slope = _slope(f(t, x))
+        slope = _slope(f(t, x), t)
         if slope.shape != x.shape:
             raise BadInputError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "
                                 "Return one component for each unknown.")
@@ -116,13 +116,24 @@ def _integral(integrand: Expr, s: Symbol, lower: Expr, upper: Expr) -> Expr:
     return sympy.integrate(integrand, (s, lower, upper))
 
 
-def _slope(value: Any) -> Matrix:
+def _slope(value: Any, t: Symbol) -> Matrix:
     value = value.tolist() if isinstance(value, sympy.MatrixBase) else plain(value)
     if isinstance(value, str) or not isinstance(value, list | tuple):
         raise BadTypeError(f"f(t, x) must be a list or a column vector, but it is {value!r}.  Return its components.")
     rows = [row if isinstance(row, list | tuple) else [row] for row in value]
+    if len({len(row) for row in rows}) > 1:
+        raise ShapeError(f"f(t, x) must be a list or a column vector, but its rows have the lengths "
+                         f"{[len(row) for row in rows]}.  Return its components.")
+    return Matrix([[_component(entry, t) for entry in row] for row in rows])
+
+
+def _component(value: Any, t: Symbol) -> Expr:
     what = "every component of f(t, x)"
-    return Matrix([[_proper(dyadic(as_expression(entry, what)), what) for entry in row] for row in rows])
+    expression = dyadic(as_expression(value, what))
+    check_same_time(expression, t)
+    if not expression.is_commutative:
+        raise BadInputError(f"{what} must commute, but it is {expression}.  Use a commutative Symbol.")
+    return _proper(expression, what)
 
 
 def _proper(expression: Expr, what: str) -> Expr:

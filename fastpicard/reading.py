@@ -42,6 +42,7 @@ from fastpicard.ring import (
 from fastpicard.writing import dyadic
 
 MAXIMAL_POWER = 10_000
+NUMBERS, TIMES = tuple("biufcOU"), tuple("mM")  # kinds of NumPy's arrays; text is refused later
 _INFINITE = (sympy.nan, sympy.zoo, sympy.oo, -sympy.oo, sympy.AccumBounds)
 _FAMILY = "is not in the family of sums of t**r cos(q t + phi) and t**r sin(q t + phi)"
 
@@ -68,7 +69,7 @@ def as_expression(value: Any, what: str = "the expression") -> Expr:
         return sympy.Rational(int(fmpq(value).p), int(fmpq(value).q))
     if isinstance(value, mpmath.mp.constant):
         return exact_constant(value, what)
-    scalar = isinstance(value, numbers.Number) or hasattr(value, "_sympy_")
+    scalar = isinstance(value, numbers.Number) or hasattr(value, "_sympy_") and not hasattr(value, "shape")
     if isinstance(value, bool | sympy.Lambda) or not scalar:
         raise BadTypeError(f"{what} must be a SymPy expression or a number, but it is {value!r}, "
                            f"a {type(value).__name__}.  For a matrix, work on its entries.")
@@ -79,7 +80,10 @@ def as_expression(value: Any, what: str = "the expression") -> Expr:
 
 def plain(value: Any) -> Any:
     """What a NumPy array holds, as nested lists, or as a number where it has no axes; anything else unchanged."""
-    return value.tolist() if hasattr(value, "dtype") and hasattr(value, "tolist") else value
+    kind = getattr(getattr(value, "dtype", None), "kind", None)
+    if kind in TIMES:
+        return str(value)  # refused as text: in integers they would be numbers of nanoseconds
+    return value.tolist() if kind in NUMBERS and hasattr(value, "tolist") else value
 
 
 def as_finite(value: Any, what: str) -> Expr:

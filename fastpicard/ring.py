@@ -366,11 +366,22 @@ def _monomial_of(parts: tuple[Any, ...]) -> Monomial:
     return tuple(sorted((generator(base), fraction(exponent)) for base, exponent in powers))
 
 
+def _constants_vanish(terms: Polynomial) -> bool:
+    """Whether the constants before every product of functions of symbols cancel, which suffices."""
+    groups: dict[Monomial, Polynomial] = {}
+    for monomial, c in terms.items():
+        variable = tuple(x for x in monomial if expression_of(x[0]).free_symbols)
+        groups.setdefault(variable, {})[tuple(x for x in monomial if x not in variable)] = c
+    return list(groups) != [ONE] and all(bool(to_expression(p).equals(0)) for p in groups.values())
+
+
 def _is_zero_to_sympy(terms: Polynomial) -> bool:
     """Whether SymPy can show that functions of symbols cancel; what it cannot decide is not zero."""
     value = _sample(terms)
     if value is not None and abs(value) > _TINY:
         return False
+    if _constants_vanish(terms):
+        return True
     numerator = sympy.fraction(sympy.together(to_expression(terms)))[0].expand()
     if numerator == 0:
         return True

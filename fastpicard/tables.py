@@ -118,7 +118,7 @@ class Table:
             P, h = self._at(box)
             self.order = a_priori_order(P, h, arb(10) ** -(digits + SPARE_DIGITS))
             growth = upper_float(largest_row_sum((P.bound * h).exp()))
-        if self.order > HIGHEST:
+        if box and self.order > HIGHEST:
             raise BadInputError(f"a table is an iterate of order {HIGHEST} at most, but in {printed(dict(box))} "
                                 f"{digits} digits take one of order {self.order}.  Take a box nearer to 0, "
                                 "fewer digits, "

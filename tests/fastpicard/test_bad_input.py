@@ -1111,3 +1111,14 @@ def test_an_entry_of_a_matrix_without_entries_is_no_parameter(build):
     with pytest.raises(NotInFamilyError, match="entry of a matrix"):
         PoissonSeries(build(entry), t)
     assert PoissonSeries(build(Symbol("M00")), t)(0) == build(Symbol("M00")).subs(t, 0)
+
+
+@pytest.mark.parametrize("f, words", [
+    (lambda time, x: [[x[0]], [x[1], 1]], "rows have the lengths"),
+    (lambda time, x: [Symbol("q", commutative=False) * x[0], 0], "commute"),
+    (lambda time, x: [Symbol("t", real=True) * x[0], 0], "not the assumptions"),
+], ids=["ragged", "noncommutative", "namesake"])
+def test_components_of_f_are_expressions_in_the_time_given(f, words):
+    """A second t would stay in the result as a constant, without a word."""
+    with pytest.raises(BadInputError, match=words):
+        picard(f, Symbol("t"), [1, 2], 2)

@@ -447,6 +447,14 @@ def test_a_root_does_not_leave_its_bracket():
     assert 0 <= root.value < 1e-20
 
 
+def test_a_root_at_an_end_is_found_at_once():
+    """a = 0 at b = 0, from both sides."""
+    boundary = boundaries(FloquetMatrix(hill(a + b * cos(t)), t, 20))[0]
+    for bracket in ((0, 1), (-1, 0)):
+        root = boundary.root(a, bracket, {b: 0})
+        assert root.value == 0 and root.evaluations < 5
+
+
 def test_curves_end_at_poles_and_branch_points():
     """Not with an error of the arithmetic: at v = 0 there is no P, left of a = 0 no sqrt(a)."""
     rod = FloquetMatrix(hill(-Rational(3, 2) / v**2 + Rational(3, 2) * h * cos(t)), t, 20)
@@ -457,3 +465,18 @@ def test_curves_end_at_poles_and_branch_points():
     start = boundary.root(b, (-0.5, 1), {a: Rational(1, 10)}).value
     points, _ = boundary.follow((a, 0, 1), (b, -1, 1), (0.1, start))
     assert points.min(axis=0)[0] < 1e-3
+
+
+def test_no_crossing_is_proved_across_a_pole_that_is_nearer_than_a_box():
+    """b = 1e-10/v: the boxes around v = 2e-10 would hold v = 0.  With b itself the crossing is at -0.00133044702989."""
+    def boundary(y, n, k):
+        S = Matrix([[a + y * cos(t), 0], [0, -a + Rational(83, 10) * y * cos(t)]])
+        return boundaries(FloquetMatrix(zeros(2).row_join(eye(2)).col_join((-S).row_join(zeros(2))), t, n))[k]
+
+    tiny = Rational(1, 10**10)
+    true = crossing(boundary(b, 60, 1), boundary(b, 60, 2), a, b, (-0.00133, 0.456))
+    try:
+        found = crossing(boundary(tiny / v, 18, 1), boundary(tiny / v, 18, 2), a, v, (-0.00133, 2.1917e-10))
+    except BadInputError:
+        return
+    assert found[a].overlaps(true[a])

@@ -101,6 +101,17 @@ def test_the_error_of_coupled_charts_covers_rho_off_the_real_line_by_truncation(
         assert abs(float(cell["margin"]) - true) <= float(cell["error"])
 
 
+def test_equal_oscillators_keep_each_other_on_the_circle():
+    """Their multipliers coincide, with one signature; where eigenvectors are nearly parallel floats cannot tell."""
+    S = a + b * cos(t)
+    P = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-S, 0, 0, 0], [0, -S, 0, 0]])
+    data = chart(FloquetMatrix(P, t, 40), (a, 0.05, 0.2), (b, 0, 0.1), points=(20, 20))
+    alone = chart(MATHIEU, (a, 0.05, 0.2), (b, 0, 0.1), points=(20, 20))
+
+    assert (data["verdict"] * alone["verdict"] >= 0).all()
+    assert float((data["verdict"] == 1).mean()) > 0.7
+
+
 def test_the_axes_of_a_chart_have_names_of_their_own():
     """Not those of its arrays, nor one name for two Symbols."""
     with pytest.raises(BadInputError, match="arrays called trace"):

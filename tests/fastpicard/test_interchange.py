@@ -46,7 +46,9 @@ OTHER = Symbol("a", positive=True)
 # -- in -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("x0", [[1.5, a], np.array([1.5, a]), np.array([[1.5], [a]]), [[1.5], [a]], Matrix([1.5, a])])
+@pytest.mark.parametrize("x0", [
+    [1.5, a], np.array([1.5, a]), np.array([[1.5], [a]]), np.array([[1.5, a]]), [[1.5], [a]], [[1.5, a]],
+    [np.array(1.5), a], Matrix([1.5, a]), Matrix([[1.5, a]])])
 def test_vectors_are_lists_columns_and_arrays(x0):
     """The same components in any of these shapes are the same vector."""
     expected = [Rational(3, 2), a]
@@ -60,6 +62,7 @@ def test_arrays_are_matrices():
     assert FloquetMatrix(np.array([[0, 1], [-a - 0.5 * cos(t), 0]]), t, 3).as_matrix() == FloquetMatrix(
         P.subs(b, Rational(1, 2)), t, 3).as_matrix()
     assert picard(lambda time, x: np.array([x[1], -x[0]]), t, [1, 0], 2) == Matrix([1 - t**2 / 2, -t])
+    assert FloquetMatrix([np.array([0, 1]), np.array([-1, 0])], t, 2).shape == (2, 2)
     assert F.trace_at({a: np.array(0.25), b: 1}) == F.trace_at({a: Rational(1, 4), b: 1})
 
 
@@ -76,8 +79,9 @@ def test_matrices_of_series_are_made_of_expressions():
     """As a series is; rows of different lengths are no matrix."""
     assert SeriesMatrix([[cos(t), a]], t)[0, 0] == PoissonSeries(cos(t), t)
     assert SeriesMatrix(Matrix([[cos(t), a]]), t) == SeriesMatrix([[cos(t), a]], t)
-    with pytest.raises(ShapeError, match="one length"):
-        SeriesMatrix([[1, 2], [3]], t)
+    for ragged in ([[1, 2], [3]], [[1, 2], []], [[], [1, 2]], [], ()):
+        with pytest.raises(ShapeError, match="one length"):
+            SeriesMatrix(ragged, t)
     with pytest.raises(BadTypeError, match="SymPy Matrix"):
         SeriesMatrix(1, t)
 
@@ -87,6 +91,35 @@ def test_functions_of_numbers_are_no_functions_of_the_time(cosine):
     """P is asked for at a Symbol, of which only SymPy knows the cosine."""
     with pytest.raises(BadTypeError, match=r"sympy\.cos"):
         FloquetMatrix(lambda time: [[0, 1], [-cosine(time), 0]], t, 3)
+
+
+def test_what_a_function_of_the_time_refuses_itself_is_passed_on():
+    """Its own message says more."""
+    with pytest.raises(BadTypeError, match="integer"):
+        FloquetMatrix(lambda time: FundamentalMatrix(P, t, "3").series, t, 3)
+
+
+@pytest.mark.parametrize("value", [
+    np.ma.masked, np.ma.array(5.0, mask=True), np.datetime64(3, "ns"), np.timedelta64(3, "ns"), sympy.Array(5),
+    np.array([1.0]), np.array("1"), np.bool_(True)])
+def test_what_is_missing_or_a_time_is_no_number(value):
+    """Its bits are one."""
+    with pytest.raises(BadTypeError):
+        F.evaluate({a: value, b: 1})
+    with pytest.raises(BadTypeError):
+        gather(value, t)
+
+
+@pytest.mark.parametrize("x", [FloquetMatrix(P, t, 60), PHI.series])
+@pytest.mark.parametrize("ask", [
+    lambda x: gather(x, t), lambda x: PoissonSeries(x, t), lambda x: PoissonSeries(cos(t), t) * x, PHI,
+    lambda x: FundamentalMatrix(P, t, 2, t0=x), lambda x: fast_picard(P, t, [x, 1], 2),
+    lambda x: FloquetMatrix([[0, x], [1, 0]], t, 2), lambda x: FloquetMatrix(P, t, 2, x)])
+def test_matrices_are_no_scalars(ask, x):
+    """And are not expanded to say so."""
+    with pytest.raises(BadTypeError) as caught:
+        ask(x)
+    assert len(str(caught.value)) < 1000
 
 
 # -- out ----------------------------------------------------------------------
@@ -102,6 +135,8 @@ def test_they_are_matrices_to_sympy_and_numpy(x):
     assert sympy.sympify(x) == exact
     assert np.array(x).tolist() == exact.tolist()
     assert latex(x) == latex(exact)
+    assert Matrix.eye(2) - x == Matrix.eye(2) - exact
+    assert x @ exact == exact @ x == exact * exact
     with pytest.raises(TypeError, match="iterable"):
         list(x)
 
@@ -234,3 +269,13 @@ def test_messages_speak_of_what_was_given():
         F.verdict({a: [-0.2, -0.1], b: 1})
     with pytest.raises(BadInputError, match="order 300"):
         tabulate(F, {a: (0, 1000), b: 1})
+
+
+def test_tables_without_parameters_have_any_order(monkeypatch):
+    """What fills the memory are the terms in parameters."""
+    monkeypatch.setattr("fastpicard.tables.HIGHEST", 3)
+    numbers = FloquetMatrix(P.subs({a: 1, b: 1}), t, 4)
+
+    assert tabulate(numbers, {}).enclosure({}).overlaps(numbers.enclosure({}))
+    with pytest.raises(BadInputError, match="order 3 at most"):
+        tabulate(F, {a: 1, b: 1})

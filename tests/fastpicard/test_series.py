@@ -525,3 +525,28 @@ def test_decimals_are_the_numbers_they_are():
 def test_a_bound_below_all_floats_is_the_least_of_them():
     """(2 pi a)**4/24, 6e-399."""
     assert FloquetMatrix(Matrix([[a]]), t, 3).remainder({a: 1e-100}) == 5e-324
+
+
+@pytest.mark.parametrize("factor", [exp(a), sqrt(a), 2**a, sympy.gamma(a), abs(a), sympy.Max(1, a), sqrt(a + 1)])
+@pytest.mark.parametrize("zero", [
+    sqrt(3 + 2 * sqrt(2)) - 1 - sqrt(2), 2 * sympy.GoldenRatio - 1 - sqrt(5),
+    sympy.log(6) - sympy.log(2) - sympy.log(3),
+    sympy.CRootOf(sympy.Symbol("x") ** 3 - 2, 0) - S(2) ** Rational(1, 3)])
+def test_constants_that_cancel_do_so_before_functions_of_parameters(factor, zero):
+    """A frequency that is one of two names of one number is one frequency."""
+    assert of(factor * zero * cos(t)) == 0
+    assert of(factor * (zero + 1) * cos(t)) == of(factor * cos(t)) != 0
+
+
+def test_resonance_is_seen_behind_two_names_of_a_frequency():
+    """cos(w t) cos(u t) with w = u has the mean 1/2, whatever factor both share."""
+    g = Symbol("g")
+    w, u = sqrt(g) * sympy.GoldenRatio, sqrt(g) * (1 + sqrt(5)) / 2
+    P = Matrix([[0, 1], [-a - b * cos(w * t) * cos(u * t), 0]])
+    found = FloquetMatrix(P, t, 1, 2 * pi / u).evaluate({a: 0, b: 1, g: 1})
+    integral = new_integrate(cos(2 * w * t) * cos(2 * u * t), (t, 0, 1))
+
+    assert abs(found[1, 0] + 2 * float(pi) / (1 + 5**0.5)) < 1e-14
+    with mpmath.workdps(30):
+        k = 2 * mpmath.sqrt(2) * mpmath.phi
+        assert abs(sympy.N(integral.subs(g, 2), 25) - (mpmath.sin(2 * k) / (4 * k) + 0.5)) < 1e-20
