@@ -249,7 +249,11 @@ class Boundary:
         Raises
         ------
         BadInputError
-            if the signs at both ends agree.
+            if the signs at both ends agree, or there is a pole between them; if ``x`` is none of ``symbols``, or fixed.
+        BadTypeError
+            if ``x`` is no Symbol, or the bracket no pair.
+        MissingParameterError
+            if another parameter has no value.
         """
         wanted = check_digits(digits) or 15
         if not isinstance(x, Symbol):

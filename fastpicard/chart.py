@@ -71,7 +71,8 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     Raises
     ------
     BadInputError, BadTypeError, MissingParameterError
-        if the axes, points, chunks, modes or fixed values are not as described; more than 1e8 points without chunks.
+        if the axes, points, chunks, modes or fixed values are not as described; more than 1e8 points without chunks;
+        axes with the name of one of the arrays.
     NotInstalledError
         without xarray; for chunks, without dask.
 

@@ -91,9 +91,9 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
         exponents = [e for e in EXPONENTS if arb(2) ** e <= radius / 4]
         reach = radius + arb(2) ** max(exponents, default=EXPONENTS[0])
         slacks = [_wide_remainder(part, values, names, reach) / radius for part in (f, g)]
+        value, _ = _both(f, g, names, values, slacks)
         for exponent in exponents:
             box = [c + arb(0, arb(2) ** exponent) for c in center]
-            value, _ = _both(f, g, names, {**exact, **dict(zip(names, center, strict=True))}, slacks)
             _, slope = _both(f, g, names, {**exact, **dict(zip(names, box, strict=True))}, slacks)
             try:
                 step = slope.solve(value)

@@ -57,13 +57,23 @@ class SeriesMatrix(AsMatrix):
     Immutable; ``==`` is mathematical equality of two of them, and with a SymPy matrix that of its trees with
     :meth:`as_matrix`; no operation rounds.
 
-    Made from a SymPy Matrix or nested lists of expressions, and the time.
+    Made from a SymPy Matrix, a NumPy array or nested lists of expressions of the family of :class:`PoissonSeries`, and
+    the time.
 
     Attributes
     ----------
     shape : (rows, columns)
     t : Symbol                  the time
     rows : tuple of tuples      the entries as :mod:`fastpicard.modes`, read only
+
+    Raises
+    ------
+    ShapeError
+        if rows have different lengths, or none.
+    NotInFamilyError
+        if an entry is no finite sum of ``c t**r cos(q t + phi)`` and ``c t**r sin(q t + phi)``.
+    BadTypeError
+        for what is no matrix, and for text.
     """
 
     rows: Rows
