@@ -25,7 +25,7 @@ from sympy import Expr, Symbol
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, namesake, printed
-from fastpicard.evaluate import Values, exact_number, expression_ball, numpy
+from fastpicard.evaluate import Values, exact_number, expression_ball, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.reading import as_expression
 from fastpicard.ring import Monomial, expression_of, symbols_of
@@ -33,6 +33,7 @@ from fastpicard.ring import Monomial, expression_of, symbols_of
 Array = Any
 Exponents = tuple[int, int]
 Member = Mapping[Symbol, tuple[Expr, Exponents]]  # a parameter of P: a number times x**i y**j
+LARGEST = 1e150  # of what is on a chart: its square is a float still
 
 
 @dataclass(frozen=True)
@@ -202,7 +203,20 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     used = [[sum(member[s][1][k] * e for s, e in parameters_of(monomial)[0]) for member in members
              for row in F.P.rows for entry in row for _, _, monomial in entry] for k in (0, 1)]
     axes = (_with_power(first, used[0]), _with_power(second, used[1]))
-    return Charted(F, axes, members, decoupled)
+    chart = Charted(F, axes, members, decoupled)
+    _refuse_infinities(chart)
+    return chart
+
+
+def _refuse_infinities(chart: Charted) -> None:
+    """Raise BadInputError where a term of ``P`` or a power of an axis grows beyond what floats can hold."""
+    reach = [max((abs(arb(end) ** axis.power) for end in (axis.lo, axis.hi)), key=upper_float) for axis in chart.axes]
+    sizes = [abs(c) * reach[0]**i * reach[1]**j for member in chart.members for waves in chart.waves(member).values()
+             for terms in waves.values() for (i, j), c in terms.items()]
+    largest = max(upper_float(size) for size in (*reach, *sizes))
+    if not largest < LARGEST:
+        raise BadInputError(f"what is on a chart must stay below {LARGEST:g}, floats end soon after it, but P or a "
+                            f"power of a parameter reaches {largest:.3g}.  Measure the parameters in other units.")
 
 
 def refuse_phases(F: FloquetMatrix) -> None:
@@ -289,9 +303,9 @@ def end_of_axis(value: Any, what: str) -> float:
         found = int(number.p) / int(number.q) if isinstance(number, fmpq) else float(number)
     except OverflowError:
         found = math.inf
-    if not math.isfinite(found) or 0 < abs(found) < float_info.min:
-        raise BadInputError(f"{what} must be a float, but {printed(value)} is beyond them.  Measure the "
-                            "parameter in other units.")
+    if not (abs(found) < LARGEST and (number == 0 or abs(found) >= float_info.min)):
+        raise BadInputError(f"{what} must be 0 or a float between {float_info.min:.3g} and {LARGEST:g} in size, but "
+                            f"it is {printed(value)}.  Measure the parameter in other units.")
     return found
 
 

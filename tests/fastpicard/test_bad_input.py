@@ -1078,6 +1078,7 @@ def test_a_series_is_not_divided_by_zero_or_by_functions_of_time(divisor):
     lambda F, B: certify(F, (a, arb("0 +/- 1"), 2), (b, 0, 1)),
     lambda F, B: certify(F, (a, 0, 1), (b, -1e-320, 1)),
     lambda F, B: certify(F, (a, -(10**400), 1), (b, 0, 1)),
+    lambda F, B: certify(F, (a, 0, 1), (b, 0, Rational(1, 10**400))),
     lambda F, B: certify(F, (a, 0, 1000), (b, 0, 1)),
     lambda F, B: tubes(F, (a, 1e100, 1e101), (b, 0, 1)),
     lambda F, B: certify(F, (a, 0, 1), (b, 0, 1), fixed=5),
@@ -1102,6 +1103,15 @@ def test_what_charts_and_curves_cannot_take_is_named(ask):
     F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 10)
     with pytest.raises((BadInputError, BadTypeError, ShapeError, IndexError), match=r"(but|which|has no).*\."):
         ask(F, boundaries(F)[2])
+
+
+@pytest.mark.parametrize("draw", [chart, certify, tubes])
+@pytest.mark.parametrize("drive, top", [(10**400 * b, 1), (10**160 * b, 1), (b**2, 1e100), (b / 10**400, 1e160)])
+def test_what_overflows_floats_on_a_chart_is_named(draw, drive, top):
+    """Where a warning of NumPy's, or nan, would be all there is to see."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - drive * cos(t), 0]]), t, 10)
+    with pytest.raises(BadInputError, match=r"other units|is not of that kind"):
+        draw(F, (a, 0, 1), (b, 0, top))
 
 
 @pytest.mark.parametrize("build", [lambda x: cos(t * x), lambda x: x * cos(t), lambda x: sin(x) + cos(t + x)])
