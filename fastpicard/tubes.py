@@ -18,7 +18,7 @@ complex a within 1 as well, so Cauchy's estimate makes it a bound of the derivat
 from __future__ import annotations
 
 import numbers
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from flint import arb, arb_mat, arb_poly, arb_series, ctx
@@ -185,13 +185,15 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     -1 odd 0.366691710629013944
     """
     chart = read_chart(F, x, y, fixed, None)
+    first, second = (replace(axis, power=min(axis.power, 1)) for axis in chart.axes)
+    chart = replace(chart, axes=(first, second))
     rule = criterion(chart.F)
-    if chart.F.shape != (2, 2) or not rule.half or any(axis.power != 1 for axis in chart.axes):
-        raise BadInputError("tubes are drawn of y'' + (a + q(t; b)) y = 0 with q even in t and whole powers of both "
-                            "parameters, and this equation is not of that kind.  Use certify.")
-    slope = chart.F.P.as_matrix().diff(chart.axes[0].symbol)
+    if chart.F.shape != (2, 2) or not rule.half or first.power < 0 or second.power < 0:
+        raise BadInputError("tubes are drawn of y'' + (a + q(t; b)) y = 0 with q even in t and no negative powers of "
+                            "the parameters, and this equation is not of that kind.  Use certify.")
+    slope = chart.F.P.as_matrix().diff(first.symbol)
     if slope != Matrix([[0, 0], [-1, 0]]):
-        name = chart.axes[0].symbol
+        name = first.symbol
         raise BadInputError(f"tubes are graphs of the constant {name} in y'' + ({name} + q(t)) y = 0, but dP/d{name} "
                             f"is {slope.tolist()}.  Choose as x the parameter that is added to q.")
     if isinstance(radius, bool) or not isinstance(radius, numbers.Real) or not LEAST_RADIUS <= radius <= 1:
@@ -200,7 +202,6 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     work = _Work(chart, float(radius))
     pieces = work.run()
     area = sum(2 * p.radius * (p.hi - p.lo) for p in pieces)
-    first, second = chart.axes
     return Tubes((first.symbol, first.lo, first.hi), (second.symbol, second.lo, second.hi), tuple(pieces),
                  max((p.radius for p in pieces), default=0.0),
                  area / ((first.hi - first.lo) * (second.hi - second.lo)), work.order)

@@ -43,6 +43,20 @@ def test_tubes_hold_the_characteristic_numbers(found, at):
             assert float(ball.rad()) <= 1.01e-20
 
 
+@pytest.mark.parametrize("drive", [b**2, b**3])
+def test_the_drive_may_be_a_power_of_the_second_parameter(drive):
+    """An even one on both sides of zero; beside the characteristic numbers at the value of the power."""
+    F = FloquetMatrix(Matrix([[0, 1], [-a - drive * cos(t), 0]]), t, 0)
+    found = tubes(F, (a, -0.5, 0.9), (b, -0.9, 0.6))
+
+    for at in (Rational(-4, 5), Rational(1, 3)):
+        numbers = [x for x in characteristic(abs(drive.subs(b, at))) if -0.5 <= x[0] <= 0.9]
+        assert [x[0] for x in found.at(at)] == [x[1] for x in numbers]
+        for (*_, ball), (number, *_) in zip(found.at(at), numbers, strict=True):
+            with ctx.workprec(200):
+                assert abs(ball.mid() - arb(number)) < 1e-25
+
+
 def test_what_leaves_the_rectangle_is_not_given_outside():
     """The lowest two curves are in it at b = -1.909 and not at -1.992, in a piece over both."""
     found = tubes(MATHIEU, (a, -1, 0.9), (b, -2, -1.85))
