@@ -34,7 +34,7 @@ from fastpicard.duals import Dual, derivative
 from fastpicard.errors import BadInputError, BadTypeError, namesake
 from fastpicard.evaluate import Values, check_digits, exact_values, free_symbols, refine, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import half_period, pairs, reversal
+from fastpicard.halfway import half_period, known_structure, reversal
 from fastpicard.latex import meaning, number, sentence, shown
 from fastpicard.modes import Modes
 from fastpicard.precision import working
@@ -82,7 +82,7 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
     if not isinstance(F, FloquetMatrix):
         raise BadTypeError(f"boundaries are those of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
     size, signs = F.shape[0], reversal(F.P)
-    if size % 2 or not pairs(F.P)[0]:
+    if size % 2 or not known_structure(F.P).paired:
         raise BadInputError("boundaries need multipliers in pairs lambda, 1/lambda, and those of this P do not come in "
                             "pairs (damping, say).  Use certify or F.verdict, which ask whether all are inside the "
                             "unit circle.")

@@ -230,7 +230,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     chart = read_chart(F, x, y, fixed, modes)
     refuse_phases(chart.F)
     rule = criterion(chart.F)
-    boxes, done = _by_convexity(chart)
+    boxes, done = _everywhere(chart) if rule.everywhere else _by_convexity(chart)
     state = Halving(chart, rule, start, undecided, progress, done)
     order, error = 0, 0.0
     if len(boxes):
@@ -267,11 +267,22 @@ def _result(state: Halving, order: int, error: float) -> CertifiedChart:
 # -- before anything is computed -----------------------------------------------
 
 
+def _first_rectangles(chart: Charted) -> Rectangles:
+    first, second = chart.axes
+    return grid(chart.axes, (first.edges(START), second.edges(START)))
+
+
+def _everywhere(chart: Charted) -> tuple[Rectangles, list[tuple[Array, Array]]]:
+    """No rectangles that are left: all are stable."""
+    np = numpy()
+    boxes = _first_rectangles(chart)
+    return boxes.at(slice(0, 0)), [(cells(chart.axes, boxes.lower, boxes.upper), np.ones(len(boxes), dtype=np.int8))]
+
+
 def _by_convexity(chart: Charted) -> tuple[Rectangles, list[tuple[Array, Array]]]:
     """The rectangles that are left, and those that are unstable by convexity."""
     np = numpy()
-    first, second = chart.axes
-    boxes = grid(chart.axes, (first.edges(START), second.edges(START)))
+    boxes = _first_rectangles(chart)
     done: list[tuple[Array, Array]] = []
     for _ in range(24):
         proved = np.logical_or.reduce([convex(chart, member, boxes) for member in chart.members])

@@ -32,11 +32,12 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Values, numpy
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import half_period, pairs, reversal
+from fastpicard.halfway import half_period, known_structure, reversal
 from fastpicard.local import BITS, convex, span_at
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
+from fastpicard.structure import Structure
 from fastpicard.sweeps import chart_type, in_parts
 from fastpicard.vectorise import Evaluator
 
@@ -125,19 +126,19 @@ def _is_exact(problem: Charted) -> bool:
 
 def _is_scalar(problem: Charted) -> bool:
     """Whether the trace alone decides."""
-    return problem.F.shape == (2, 2) and pairs(problem.F.P)[0]
+    return problem.F.shape == (2, 2) and known_structure(problem.F.P).paired
 
 
 def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     """Trace, margin, error and verdict at the points of a grid, shape (4, up, across)."""
     np = numpy()
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
-    paired, form = pairs(problem.F.P)
+    known = known_structure(problem.F.P)
     scalar = _is_scalar(problem)
     compute = _by_matrix if not scalar else _by_factors if _is_mirrored(problem.F.P) else _by_trace
     best: list[Array] = []
     for member in problem.members:
-        found = list(compute(problem, member, grid, paired, form))
+        found = list(compute(problem, member, grid, known))
         if best:
             worse = found[1] < best[1]
             found = [np.where(worse, new, old) for new, old in zip(found, best, strict=True)]
@@ -145,6 +146,8 @@ def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     trace, margin, error = best
     verdict = np.where(abs(margin) <= error, 0, np.sign(margin))
     verdict = np.where(np.isfinite(margin) & np.isfinite(error), verdict, 0)
+    if known.bounded:
+        verdict = np.where(np.isfinite(margin), 1.0, 0.0)
     open_ = np.flatnonzero(verdict == 0)
     corner = np.stack([axis.inner(z[open_]) for axis, z in zip(problem.axes, grid, strict=True)])
     convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])
@@ -252,6 +255,15 @@ def _of_one_signature(multipliers: Array, vectors: Array, form: Any) -> Array:
     return np.where(far, opposite, alike)
 
 
+def _without_one(multipliers: Array, vectors: Array) -> tuple[Array, Array]:
+    """The multipliers that come in pairs, where their number is odd: all but the one next to 1, and their vectors."""
+    np = numpy()
+    points, size = multipliers.shape
+    kept = np.arange(size) != np.argmin(abs(multipliers - 1), axis=1)[:, None]
+    return multipliers[kept].reshape(points, size - 1), vectors.transpose(0, 2, 1)[kept].reshape(
+        points, size - 1, size).transpose(0, 2, 1)
+
+
 def _margin_of_pairs(multipliers: Array, moved: Array, of_one_signature: Array) -> tuple[Array, Array]:
     """The margin of ``rho = lambda + 1/lambda``, and its error, where multipliers may have moved so far.
 
@@ -301,8 +313,7 @@ def _tail(z: Array, n: int) -> Array:
     return sums[np.searchsorted(table, z)]
 
 
-def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool,
-               form: Any) -> tuple[Array, Array, Array]:
+def _by_matrix(problem: Charted, member: Member, grid: list[Array], known: Structure) -> tuple[Array, Array, Array]:
     np = numpy()
     size = problem.F.shape[0]
     values, bounds = _evaluated(problem, member, problem.F.collapsed, grid)
@@ -314,7 +325,10 @@ def _by_matrix(problem: Charted, member: Member, grid: list[Array], paired: bool
         condition = np.linalg.cond(vectors)
         rounding = 2.0**-48 * abs(matrices).max(axis=(1, 2))
         moved = (bounds.max(axis=0) + _remainder(problem, member, grid) + rounding) * size * np.minimum(condition, 1e8)
-        if paired:
+        if known.paired and size > 1:
+            if size % 2:
+                multipliers, vectors = _without_one(multipliers, vectors)
+            form = known.forms[0] if known.forms else None
             margin, error = _margin_of_pairs(multipliers, moved, _of_one_signature(multipliers, vectors, form))
         else:
             margin, error = 1 - abs(multipliers).max(axis=1), moved

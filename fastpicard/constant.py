@@ -17,8 +17,8 @@ from flint import fmpq, fmpq_mat, fmpq_poly
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS, NO_ANGLE
 from fastpicard.precision import working
-from fastpicard.spectrum import coefficients
 from fastpicard.stability import Verdict
+from fastpicard.structure import coefficients
 
 _OPPOSITE = fmpq_poly([0, -1])
 

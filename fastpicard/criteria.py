@@ -10,6 +10,9 @@ Stable if ``B C < 0 < A D``, unstable if ``B C > 0`` or ``A D < 0``.
 matrices (module ``determinants``) are positive definite exactly if all rho are real, distinct and in (-2, 2): stable,
 all multipliers simple on the circle.  If a principal minor is negative, some rho is not in [-2, 2]: unstable.
 ``p(2)`` and ``(-1)**N p(-2)`` are products of ``2 - rho`` and ``2 + rho``: negative, and some rho is outside.
+Of an odd number of multipliers one is 1, and is left out; where no rho is 2, it is simple.
+
+**A positive definite quadratic form that is constant along all solutions**: stable everywhere.
 
 **Coinciding multipliers** of one signature do no harm: with ``W`` from the Hamiltonian structure the form
 ``W (M - 1/M)`` is invariant; definite, it proves stability.
@@ -30,7 +33,7 @@ from flint import fmpq
 from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, product, sums_of_rho
 from fastpicard.evaluate import numpy
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import Signs, half_period, pairs, reversal
+from fastpicard.halfway import Signs, half_period, known_structure, reversal
 from fastpicard.modes import Modes
 from fastpicard.taylormodels import UNIT, Models
 
@@ -49,6 +52,7 @@ class Criterion:
     entries : exact constants, row by row
     functions : from the entries as models, shape (rows, rows), to a list of models
     verdicts : from signs, shape (functions, m), to 1, -1 or 0, shape (m,)
+    everywhere : bool               whether all is stable by the structure alone
     """
 
     name: str
@@ -56,21 +60,23 @@ class Criterion:
     entries: Callable[[FloquetMatrix], list[list[Modes]]]
     functions: Callable[[Rows], list[Models]]
     verdicts: Callable[[Array], Array]
+    everywhere: bool = False
 
 
 def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
-    size, signs = F.shape[0], reversal(F.P)
-    paired, form = pairs(F.P)
+    size, signs, known = F.shape[0], reversal(F.P), known_structure(F.P)
+    if known.bounded:
+        return Criterion(known.bounded, False, _whole, lambda rows: [], _all_positive, everywhere=True)
     balanced = signs is not None and 2 * signs.count(1) == size
-    if paired and balanced and size == 2:
+    if known.paired and balanced and size == 2:
         return Criterion("half-period factors of trace -+ 2", True, half_period, _flat, _by_factors)
-    if paired and size == 2:
+    if known.paired and size == 2:
         return Criterion("trace", False, _whole, lambda rows: [_sum(rows) * -1 + 2.0, _sum(rows) + 2.0], _all_positive)
-    if paired and balanced and form is not None and signs is not None:
-        return _reversible(signs, form)
-    if paired:
-        return _paired(size // 2)
+    if known.paired and balanced and known.forms and signs is not None:
+        return _reversible(signs, known.forms[0])
+    if known.paired:
+        return _paired(size)
     return Criterion("Schur and Cohn", False, _whole, _schur_cohn, _strictly_inside)
 
 
@@ -163,9 +169,14 @@ def _elementary(sums: list[Any]) -> list[Any]:
     return e
 
 
-def _paired(n: int) -> Criterion:
+def _paired(size: int) -> Criterion:
+    n = size // 2
+
     def functions(rows: Rows) -> list[Models]:
-        sums = sums_of_rho(power_sums(rows, 2 * n), 2 * n, 2 * n)
+        traces = power_sums(rows, 2 * n)
+        if size % 2:
+            traces = [x + -1.0 for x in traces]  # one of the multipliers is 1
+        sums = sums_of_rho(traces, 2 * n, 2 * n)
         first, second = (_models(hermite(sums, n, beyond), sums[0]) for beyond in (False, True))
         return [_minor(first, k) for k in range(2, n + 1)] + [_minor(second, k) for k in range(1, n + 1)]
 

@@ -37,8 +37,9 @@ from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
 from fastpicard.ring import ONE, Polynomial, multiply, read_only, symbols_of
-from fastpicard.spectrum import Multiplier, general_multipliers, keeps_area, reciprocal_multipliers, symplectic_forms
+from fastpicard.spectrum import Multiplier, multipliers_of
 from fastpicard.stability import Verdict, judge
+from fastpicard.structure import Structure, structure
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
 
@@ -351,18 +352,15 @@ class FloquetMatrix(AsMatrix):
             raise BadInputError(f"the coefficients of P must be floats in size, but at {dict(exact)} they are beyond "
                                 "them.  Measure the time in other units.") from None
 
-    def _structure(self, exact: Mapping[Any, Any]) -> tuple[bool, list[Any]]:
-        """Whether multipliers come in pairs lambda, 1/lambda, and the invariant symplectic forms."""
-        forms = symplectic_forms(self.P, exact)
-        reverses = self.shape[0] % 2 == 0 and self.at(exact)[0].reversal is not None
-        return bool(forms) or reverses or keeps_area(self.P, exact), forms
+    def _structure(self, exact: Mapping[Any, Any]) -> Structure:
+        return structure(self.P, exact, self.at(exact)[0].reversal is not None)
 
     def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
         """The eigenvalues of the true Floquet matrix, complex or mpc, sorted by modulus, largest first.
 
-        All digits are right.  Where ``P`` is Hamiltonian or reversible they come in pairs: number ``k`` from the
-        front is the reciprocal of number ``k`` from the back, and what is proved to be on the unit circle is reported
-        as ``cos + i sin`` there; :meth:`multiplier_enclosures` tells which are.
+        All digits are right.  Where ``P`` is Hamiltonian, reversible or keeps a quadratic form they come in pairs:
+        number ``k`` from the front is the reciprocal of number ``k`` from the back, and what is proved to be on the
+        unit circle is reported as ``cos + i sin`` there; :meth:`multiplier_enclosures` tells which are.
 
         Raises
         ------
@@ -382,12 +380,12 @@ class FloquetMatrix(AsMatrix):
         """
         wanted = count_of_digits(digits)
         exact = self.numbers(values)
-        paired, _ = self._structure(exact)
+        known = self._structure(exact)
         tried = wanted + 5
         while True:
             matrix = self._true(exact, tried, strict=False)
             with working(dps_to_prec(tried) + 64):
-                found = reciprocal_multipliers(matrix) if paired else general_multipliers(matrix)
+                found = multipliers_of(matrix, known)
                 if all(m.digits >= wanted for m in found):
                     return found
             if is_box(exact) and tried > 2 * wanted + 20:
@@ -433,11 +431,13 @@ class FloquetMatrix(AsMatrix):
         constant = constant_matrix(self.P, exact)
         if constant is not None:
             return by_minimal_polynomial(constant)
-        paired, forms = self._structure(exact)
+        known = self._structure(exact)
+        if known.bounded:
+            return Verdict.STABLE.because(known.bounded)
         for digits in (10, 30, 100):
             matrix = self._true(exact, digits, strict=False)
             with working(dps_to_prec(digits) + 64):
-                verdict = judge(matrix, paired, forms)
+                verdict = judge(matrix, known)
             if verdict != Verdict.UNDECIDED or is_box(exact):
                 break
         return verdict

@@ -25,8 +25,6 @@ fewer iterates: 56 instead of 79 for thirty digits of Mathieu's equation at ``|a
 
 from __future__ import annotations
 
-from typing import Any
-
 from flint import fmpq
 
 from fastpicard import modes as algebra
@@ -39,7 +37,7 @@ from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Linear, Modes, orient
 from fastpicard.period import turns_of, whole_turns
 from fastpicard.ring import ONE, Polynomial, multiply, to_expression
-from fastpicard.spectrum import keeps_area, symplectic_forms
+from fastpicard.structure import Structure, structure
 from fastpicard.unpacking import to_modes, without_frequencies
 
 Signs = tuple[int, ...]
@@ -69,14 +67,9 @@ def _backwards(modes: Modes) -> Modes:
     return result
 
 
-def pairs(P: SeriesMatrix) -> tuple[bool, Any]:
-    """Whether multipliers come in pairs lambda, 1/lambda at all parameters, and a symplectic form, if there is one.
-
-    They do where ``P`` is Hamiltonian, or reverses in time and has even size, or is 2 x 2 and the mean of its trace 0.
-    """
-    forms = symplectic_forms(P, {})
-    reverses = P.shape[0] % 2 == 0 and reversal(P) is not None
-    return bool(forms) or reverses or keeps_area(P, {}), forms[0] if forms else None
+def known_structure(P: SeriesMatrix) -> Structure:
+    """What ``P`` says of the multipliers at all values of the parameters."""
+    return structure(P, {}, reversal(P) is not None)
 
 
 def half_period(F: FloquetMatrix) -> list[list[Modes]]:

@@ -1,10 +1,7 @@
-r"""Multipliers in balls, with the symmetry that the equation has, kept exactly.
+r"""Multipliers in balls, with the symmetry that the equation has (module ``structure``), kept exactly.
 
-If a constant, regular, antisymmetric ``W`` makes ``W P(t)`` symmetric at all times
-(``P`` is Hamiltonian), ``Phi(T)' W Phi(T) = W``: with every multiplier ``lambda`` also
-``1/lambda`` is one.  The same follows from reversal, ``s P(-t) s = -P(t)``, and for two by two from
-``det Phi(T) = exp(integral of trace P) = 1`` (Liouville).  Then the characteristic polynomial is
-palindromic, and in ``rho = lambda + 1/lambda`` it is a polynomial ``p`` of half the degree,
+Where multipliers come in pairs ``lambda, 1/lambda`` the characteristic polynomial is palindromic, and in
+``rho = lambda + 1/lambda`` it is a polynomial ``p`` of half the degree,
 
     chi(lambda)/lambda**m = p(rho) = c_m + sum_k c_{m-k} D_k(rho),
     D_0 = 2,  D_1 = rho,  D_{k+1} = rho D_k - D_{k-1}        (D_k = lambda**k + lambda**-k).
@@ -21,113 +18,30 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import combinations
-from math import factorial
+from itertools import accumulate, combinations
 from typing import Any
 
-from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_mat
+from flint import acb, acb_poly, arb, arb_poly, ctx
 
 from fastpicard.latex import number, shown
-from fastpicard.matrix import SeriesMatrix
 from fastpicard.packing import packed, unpacked
-from fastpicard.ring import expression_of
-
-# -- structure ---------------------------------------------------------------
-
-
-def symplectic_forms(P: SeriesMatrix, values: Mapping[Any, Any]) -> list[Any]:
-    """Antisymmetric ``fmpq_mat`` ``W`` with ``W P(t)`` symmetric at all ``t``: a regular one, then a basis of all.
-
-    Empty if no such ``W`` is regular.  Exact: parameters with rational values are put in, all others stay symbols,
-    so that a form that is found holds at every value of those.
-    """
-    size = P.shape[0]
-    places = list(combinations(range(size), 2))
-    if size % 2:
-        return []
-    kernel = _kernel([_condition(A, size, places) for A in coefficients(P, values).values()], len(places))
-    basis = [_antisymmetric(vector, size, places) for vector in kernel]
-    for attempt in range(1, 6):
-        weights = [fmpq(factorial(attempt + k) % 97 + k + 1) for k in range(len(basis))]
-        form = sum((W * weight for W, weight in zip(basis, weights, strict=True)), fmpq_mat(size, size))
-        if basis and form.det() != 0:
-            return [form, *basis]
-    return []
-
-
-def keeps_area(P: SeriesMatrix, values: Mapping[Any, Any]) -> bool:
-    """Whether ``P`` is 2 x 2 and the mean of its trace vanishes, so that the determinant of ``Phi(T)`` is 1."""
-    still = [A for (_, (frequency, _), _), A in coefficients(P, values).items() if not frequency]
-    return P.shape == (2, 2) and all(A.get((0, 0), fmpq(0)) + A.get((1, 1), fmpq(0)) == 0 for A in still)
-
-
-def _antisymmetric(vector: list[Any], size: int, places: list[tuple[int, int]]) -> Any:
-    form = fmpq_mat(size, size)
-    for (i, j), x in zip(places, vector, strict=True):
-        form[i, j], form[j, i] = x, -x
-    return form
-
-
-def coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> dict[Any, dict[tuple[int, int], Any]]:
-    """The constant matrices that multiply independent functions in ``P``, by (kind, angle, monomial) of these."""
-    found: dict[Any, dict[tuple[int, int], Any]] = {}
-    for i, row in enumerate(P.rows):
-        for j, modes in enumerate(row):
-            for (kind, angle, monomial), f in modes.items():
-                value, rest = f[0], []
-                for g, e in monomial:
-                    given = values.get(expression_of(g))
-                    if isinstance(given, fmpq) and e == int(e) and (given != 0 or e > 0):
-                        value *= given ** int(e)
-                    else:
-                        rest.append((g, e))
-                matrix = found.setdefault((kind, angle, tuple(rest)), {})
-                matrix[i, j] = matrix.get((i, j), fmpq(0)) + value
-    return found
-
-
-def _condition(A: dict[tuple[int, int], Any], size: int, places: list[tuple[int, int]]) -> list[list[Any]]:
-    """The rows of ``W A - (W A)' = 0`` in the entries of ``W`` above the diagonal."""
-    number = {place: k for k, place in enumerate(places)}
-    rows = {place: [fmpq(0)] * len(places) for place in places}
-    for (k, j), value in A.items():
-        for i in range(size):
-            if i in (k, j):
-                continue
-            column, sign = (number[i, k], 1) if i < k else (number[k, i], -1)
-            if i < j:
-                rows[i, j][column] += sign * value
-            else:
-                rows[j, i][column] -= sign * value
-        # i == j: the diagonal of W A - (W A)' vanishes by itself.
-    return list(rows.values())
-
-
-def _kernel(blocks: list[list[list[Any]]], unknowns: int) -> list[list[Any]]:
-    rows = [row for block in blocks for row in block if any(row)]
-    if not rows:
-        return [[fmpq(int(i == j)) for i in range(unknowns)] for j in range(unknowns)]
-    reduced, rank = fmpq_mat(rows).rref()
-    pivots = [next(k for k in range(unknowns) if reduced[r, k] != 0) for r in range(rank)]
-    basis = []
-    for free in sorted(set(range(unknowns)) - set(pivots)):
-        vector = [fmpq(0)] * unknowns
-        vector[free] = fmpq(1)
-        for r, pivot in enumerate(pivots):
-            vector[pivot] = -reduced[r, free]
-        basis.append(vector)
-    return basis
-
+from fastpicard.structure import Structure
 
 # -- the characteristic polynomial in rho ------------------------------------
 
 
 def in_rho(matrix: Any) -> Any:
-    """``p`` of a matrix of balls whose true characteristic polynomial is palindromic: an ``arb_poly``, monic."""
+    """``p`` of a matrix of balls whose true multipliers come in pairs: an ``arb_poly``, monic.
+
+    Of an odd number one is 1, for the determinant is: ``chi(lambda)/(lambda - 1)`` is palindromic.
+    """
     coefficients = matrix.charpoly().coeffs()
+    if len(coefficients) % 2 == 0:
+        coefficients = list(accumulate(reversed(coefficients[1:])))[::-1]
     half = len(coefficients) // 2
+    if half == 0:
+        return arb_poly([1])
     even = [min(coefficients[k], coefficients[2 * half - k], key=lambda x: float(x.rad())) for k in range(half)]
     dickson = [arb_poly([2]), arb_poly([0, 1])]
     while len(dickson) <= half:
@@ -170,6 +84,8 @@ def root_discs(p: Any) -> list[Disc]:
     Approximations of roots that coincide may be nearer to each other than the balls allow; their discs are huge then.
     Those of the polynomial at an edge of the balls are as far apart as the balls leave open.
     """
+    if p.degree() == 0:
+        return []
     found = _discs(p, _approximate_roots(p))
     if all(d.alone for d in found):
         return found
@@ -274,15 +190,24 @@ def _multiplier(parts: Any, on_unit_circle: bool | None) -> Multiplier:
     return Multiplier(acb(*unpacked(parts)), on_unit_circle)
 
 
-def reciprocal_multipliers(matrix: Any) -> list[Multiplier]:
-    """The multipliers of a matrix whose characteristic polynomial is palindromic.
+def multipliers_of(matrix: Any, known: Structure) -> list[Multiplier]:
+    """The multipliers of a matrix of balls, sorted by modulus, largest first.
 
-    Sorted by modulus, largest first; number ``k`` from the front and number ``k`` from the
-    back are reciprocal, and equal to ``1/lambda`` of each other as balls.
+    In pairs, number ``k`` from the front and number ``k`` from the back are reciprocal, and equal to ``1/lambda`` of
+    each other as balls; of an odd number the one in the middle is 1.
     """
+    if not known.paired:
+        balls = sorted((disc.ball for disc in root_discs(matrix.charpoly())), key=_by_modulus)
+        return [Multiplier(z, False if abs(z) > 1 or abs(z) < 1 else None) for z in balls]
     pairs = [_pair(disc) for disc in root_discs(in_rho(matrix))]
-    pairs.sort(key=lambda pair: (-float(abs(_middle(pair[0].ball))), cmath.phase(complex(pair[0]))))
-    return [pair[0] for pair in pairs] + [pair[1] for pair in reversed(pairs)]
+    pairs.sort(key=lambda pair: _by_modulus(pair[0].ball))
+    one = [Multiplier(acb(1), True)] * (matrix.nrows() % 2)
+    found = [pair[0] for pair in pairs] + one + [pair[1] for pair in reversed(pairs)]
+    return [Multiplier(m.ball, True) for m in found] if known.bounded else found
+
+
+def _by_modulus(z: Any) -> tuple[float, float]:
+    return -float(abs(_middle(z))), cmath.phase(complex(_middle(z)))
 
 
 def _pair(disc: Disc) -> tuple[Multiplier, Multiplier]:
@@ -318,10 +243,3 @@ def _near_circle(rho: Any) -> tuple[Multiplier, Multiplier]:
     spread = (gap + (gap * gap + 4 * gap).sqrt()).upper()  # |lambda - w| |lambda - 1/w| = |rho - sigma| |lambda|
     around = acb(arb(0, spread), arb(0, spread))
     return Multiplier(w + around, None), Multiplier(w.conjugate() + around, None)
-
-
-def general_multipliers(matrix: Any) -> list[Multiplier]:
-    """The multipliers of any matrix of balls, sorted by modulus, largest first."""
-    found = [disc.ball for disc in root_discs(matrix.charpoly())]
-    found.sort(key=lambda z: (-float(abs(_middle(z))), cmath.phase(complex(_middle(z)))))
-    return [Multiplier(z, False if abs(z) > 1 or abs(z) < 1 else None) for z in found]

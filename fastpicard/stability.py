@@ -8,7 +8,8 @@ Where multipliers come in pairs ``lambda, 1/lambda`` (Hamiltonian or reversible 
 
 - a root of ``p`` off the real interval [-2, 2] is a multiplier outside the unit circle: unstable.
   For 2 x 2 this is ``|trace| > 2``, [Neves] (15);
-- all roots of ``p`` real, simple and inside (-2, 2): all multipliers simple on the circle: stable;
+- all roots of ``p`` real, simple and inside (-2, 2): all multipliers simple on the circle: stable.  Of an odd number of
+  multipliers one is 1, and then it is simple, too;
 - a definite invariant form: with ``W`` from the Hamiltonian structure and any real polynomial ``f``,
   ``K = W (M - 1/M) f(M + 1/M)`` is symmetric and ``M' K M = K``; if a sum of such forms is definite, orbits stay
   on ellipsoids: stable, also where multipliers coincide.  (``W M`` and ``M' W M = W`` give
@@ -31,6 +32,7 @@ from fastpicard.errors import BadInputError
 from fastpicard.evaluate import numpy
 from fastpicard.latex import sentence, shown
 from fastpicard.spectrum import Disc, in_rho, root_discs
+from fastpicard.structure import Structure, is_definite
 
 
 @dataclass(frozen=True, repr=False)
@@ -82,23 +84,22 @@ class Verdict:
 Verdict.STABLE, Verdict.UNSTABLE, Verdict.UNDECIDED = Verdict("STABLE"), Verdict("UNSTABLE"), Verdict("UNDECIDED")
 
 
-def judge(matrix: Any, paired: bool, forms: list[Any]) -> Verdict:
+def judge(matrix: Any, known: Structure) -> Verdict:
     """The verdict on every true Floquet matrix in a matrix of balls.
 
     Parameters
     ----------
     matrix : arb_mat                contains ``M``
-    paired : bool                   whether the multipliers of ``M`` are known to come in pairs lambda, 1/lambda
-    forms : list of fmpq_mat        all ``W`` with ``M' W M = W``: a regular one, then a basis; or empty
+    known : Structure               what ``P`` says of the multipliers
     """
-    if not paired:
+    if not known.paired:
         return schur_cohn(matrix)
     if matrix.nrows() == 2:
         return by_trace(matrix.trace())
     discs = root_discs(in_rho(matrix))
-    proved = _by_rho(discs)
+    proved = _by_rho(discs, "the multiplier 1 is simple, and " if matrix.nrows() % 2 else "")
     if proved is None:
-        proved = _by_form(matrix, forms, discs)
+        proved = _by_form(matrix, known.forms, discs)
     if proved is None:
         return Verdict.UNDECIDED.because("the balls leave open whether a value of rho = lambda + 1/lambda is in "
                                          "[-2, 2]: " + ", ".join(_place(d) for d in discs))
@@ -124,7 +125,7 @@ def _told_from(end: int, trace: Any) -> str:
     return shown if not arb(shown).contains(end) else f"{end} + {(trace - end).str(5)}"
 
 
-def _by_rho(discs: list[Disc]) -> Verdict | None:
+def _by_rho(discs: list[Disc], before: str) -> Verdict | None:
     for cluster in {d.cluster for d in discs}:
         members = [d for d in discs if d.cluster == cluster]
         if all(_off_segment(d) for d in members):
@@ -133,7 +134,7 @@ def _by_rho(discs: list[Disc]) -> Verdict | None:
                 "multiplier is outside the unit circle")
     if all(d.real and abs(d.ball.real) < 2 for d in discs):
         return Verdict.STABLE.because(
-            "all values of rho = lambda + 1/lambda are real, distinct and strictly between -2 and 2: "
+            f"{before}all values of rho = lambda + 1/lambda are real, distinct and strictly between -2 and 2: "
             + ", ".join(_place(d) for d in discs))
     return None
 
@@ -194,17 +195,6 @@ def _next_to(target: Any, invariant: list[Any]) -> list[float]:
     if not (numpy().isfinite(columns).all() and numpy().isfinite(target).all()):
         return [0.0] * len(invariant)
     return [float(x) for x in numpy().linalg.lstsq(columns, target.ravel(), rcond=None)[0]]
-
-
-def is_definite(matrix: Any) -> bool:
-    """Whether the symmetric part of a matrix of balls is positive definite, by elimination."""
-    rows = ((matrix + matrix.transpose()) / 2).tolist()
-    while rows:
-        pivot, *rest = rows[0]
-        if not pivot > 0:
-            return False
-        rows = [[x - row[0] * y / pivot for x, y in zip(row[1:], rest, strict=True)] for row in rows[1:]]
-    return True
 
 
 # -- any matrix --------------------------------------------------------------

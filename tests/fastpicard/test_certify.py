@@ -251,7 +251,7 @@ def test_time_is_kept_to():
 def test_memory_is_kept_to(monkeypatch):
     """Where nothing is decided (all multipliers on the circle, by a criterion for damping) halving ends by itself."""
     monkeypatch.setattr("fastpicard.halving.MOST", 1 << 16)
-    F = FloquetMatrix(Matrix([[0, 1, 0], [-a - b * cos(t), 0, 0], [0, 0, 0]]), t, 0)
+    F = FloquetMatrix(Matrix([[0, 1, 0], [-a - b * cos(t), 0, 0], [cos(t) + sin(t), 0, 0]]), t, 0)
     chart = certify(F, (a, 0.3, 0.6), (b, 0, 0.1), seconds=600)
 
     assert chart.areas.sum() == pytest.approx(0.03) and chart.undecided == pytest.approx(1)

@@ -11,9 +11,19 @@ from flint import acb, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 from hypothesis import assume, given, settings, strategies as st
 from sympy import CRootOf, Matrix, Rational, Symbol, cos, pi, sin, sqrt
 
-from fastpicard import BadInputError, FloquetMatrix, MissingParameterError, Verdict, boundaries, tabulate
-from fastpicard.spectrum import in_rho, root_discs, symplectic_forms
-from fastpicard.stability import is_definite, judge, schur_cohn
+from fastpicard import (
+    BadInputError,
+    FloquetMatrix,
+    MissingParameterError,
+    Verdict,
+    boundaries,
+    certify,
+    chart,
+    tabulate,
+)
+from fastpicard.spectrum import in_rho, root_discs
+from fastpicard.stability import judge, schur_cohn
+from fastpicard.structure import Structure, is_definite, structure
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize
 from tests.fastpicard.test_reference_cases import cases, numbers, read, system
 
@@ -176,6 +186,73 @@ def test_sum_resonance_is_unstable_and_difference_resonance_stable():
         assert F.verdict() == expected
 
 
+# -- other invariants, and odd sizes ---------------------------------------------
+
+
+def precession(x, y, z):
+    """A spin in a magnetic field: x' = field cross x."""
+    return Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+@pytest.mark.parametrize("P", [
+    precession(b * cos(t), b * sin(t), a),
+    precession(a + cos(t), sin(2 * t) + b, 3),
+    sympy.diag(precession(a, b, sin(t)), precession(cos(t), 1, b)),
+    sympy.diag(1, 2, Rational(1, 3)).inv() * precession(a * cos(t), b, 1 + sin(t)),
+    Matrix([[0, a + b * cos(t)], [-2 * a - 2 * b * cos(t), 0]]),
+    Matrix([[a * sin(t) + b * sin(2 * t)]]),
+], ids=["about an axis", "not reversing", "two", "in other axes", "in the plane", "one by one"])
+def test_solutions_on_ellipsoids_are_stable_everywhere(P):
+    """Also where multipliers coincide or are 1; the multipliers are those of the matrix, and on the circle."""
+    F = FloquetMatrix(P, t, 8)
+    for values in ({a: 0, b: 0}, {a: Rational(1, 3), b: Rational(-2, 7)}, {a: arb(1, 0.1), b: sqrt(2)}):
+        assert F.verdict(values) == Verdict.STABLE
+    found = F.multiplier_enclosures({a: Rational(1, 3), b: Rational(-2, 7)}, 20)
+    M = F.enclosure({a: Rational(1, 3), b: Rational(-2, 7)}, 30)
+
+    assert all(m.on_unit_circle and abs(abs(complex(m)) - 1) < 1e-15 for m in found)
+    assert abs(sum(complex(m) for m in found) - float(M.trace())) < 1e-13
+    assert certify(F, (a, 0, 1), (b, 0, 1)).fraction(Verdict.STABLE) == 1
+    assert (chart(F, (a, 0, 1), (b, 0, 1), points=(5, 4))["verdict"] == 1).all()
+
+
+def test_an_indefinite_form_bounds_nothing():
+    """x1**2 - x2**2 is constant, and solutions grow; so they do where the form has two signs and size three."""
+    assert FloquetMatrix(Matrix([[0, cos(t) + 1], [cos(t) + 1, 0]]), t, 0).verdict() == Verdict.UNSTABLE
+    boost = Matrix([[0, 1 + cos(t), 0], [1 + cos(t), 0, sin(t) / 9], [0, -sin(t) / 9, 0]])
+    assert FloquetMatrix(boost, t, 0).verdict() == Verdict.UNSTABLE
+    assert not structure(FloquetMatrix(boost, t, 0).P, {}, False).bounded
+
+
+SQUARES = FloquetMatrix(Matrix([[0, 1, 0], [0, 0, 1], [2 * b * sin(t), -4 * a - 4 * b * cos(t), 0]]), t, 0)
+
+
+@settings(max_examples=40)
+@given(st.fractions(-1, 3, max_denominator=99), st.fractions(-2, 2, max_denominator=99))
+def test_products_of_mathieu_functions_have_the_products_of_their_multipliers(x, y):
+    """Products z of two solutions of y'' + q y = 0 solve one equation of third order, (z'' + 4 q z)' = 2 q' z."""
+    values = {a: x, b: y}
+    single, squares = MATHIEU.multiplier_enclosures(values, 25), SQUARES.multiplier_enclosures(values, 20)
+    expected = [single[0].ball ** 2, acb(1), single[1].ball ** 2]
+
+    assert all(any(m.ball.overlaps(z) for m in squares) for z in expected)
+    assert SQUARES.verdict(values) in (MATHIEU.verdict(values), Verdict.UNDECIDED)
+    trace = MATHIEU.enclosure(values, 25).trace()
+    if min(abs(trace), abs(trace - 2), abs(trace + 2)) > 1e-6:
+        assert SQUARES.verdict(values) == MATHIEU.verdict(values)
+
+
+def test_a_chart_of_odd_size_is_that_of_the_equation_it_is_made_of():
+    """By points and by rectangles; where both decide they agree, and not all is left open."""
+    data = [chart(F.to_order(42), (a, 0.15, 0.3), (b, 0, 0.1), points=(15, 9))["verdict"] for F in (SQUARES, MATHIEU)]
+    proved = [certify(F, (a, 0.15, 0.3), (b, 0, 0.1), undecided=0.1, seconds=600) for F in (SQUARES, MATHIEU)]
+
+    assert (data[0] * data[1] >= 0).all() and float((data[0] == 0).mean()) < 0.2
+    assert proved[0].undecided <= 0.1
+    for x, _, y, _ in proved[0].cells[::7]:
+        assert int(proved[0].verdict(x, y)) * int(proved[1].verdict(x, y)) >= 0
+
+
 # -- the pieces ------------------------------------------------------------------
 
 
@@ -190,7 +267,7 @@ def test_the_symplectic_form_is_found_where_there_is_one():
     damped = second - Matrix([[zero, zero], [zero, one / 7]])
 
     for P, exists in ((second, True), (hamiltonian, True), (damped, False)):
-        forms = symplectic_forms(FloquetMatrix(P, t, 0).P, {})
+        forms = structure(FloquetMatrix(P, t, 0).P, {}, False).forms
         assert bool(forms) == exists
         for form in forms[:1]:
             W = Matrix(4, 4, [Rational(int(x.p), int(x.q)) for x in form.entries()])
@@ -278,9 +355,10 @@ def test_a_rotation_by_equal_angles_is_stable_by_its_invariant_form():
     with ctx.workprec(100):
         for angles in ((1.0, 1.0), (1.0, 1.0, -2.0)):
             matrix, forms = rotations(*angles)
-            assert judge(matrix, True, forms) == Verdict.STABLE
-            assert judge(matrix, True, []) == Verdict.UNDECIDED
-        assert judge(*rotations(1.0, -1.0)[:1], True, rotations(1.0, -1.0)[1]) == Verdict.UNDECIDED
+            assert judge(matrix, Structure(True, forms, "")) == Verdict.STABLE
+            assert judge(matrix, Structure(True, [], "")) == Verdict.UNDECIDED
+        matrix, forms = rotations(1.0, -1.0)
+        assert judge(matrix, Structure(True, forms, "")) == Verdict.UNDECIDED
 
 
 @given(st.lists(st.floats(0.1, 5), min_size=3, max_size=3), st.floats(-1, 1))
