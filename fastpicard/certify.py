@@ -212,7 +212,8 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     Notes
     -----
     Stable means bounded solutions; with damping, asymptotically stable.  Mathieu's equation, a in [-1, 5], b in [0, 6]:
-    all but 1e-4 of the area in some 10 s.  See ``benchmarks/charts.py``.
+    all but 1e-4 of the area in 3 to 10 s by machine, see ``benchmarks/charts.py``.  Of a damped one the iterate alone
+    may take longer, and twice as long with 0.1, a dyadic number of 55 bits, in place of ``Rational(1, 10)``.
 
     Examples
     --------

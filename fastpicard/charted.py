@@ -192,8 +192,8 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
             raise MissingParameterError(f"every mode gives all parameters of P but the fixed ones, also those on the "
                                         f"axes, and one does not give {missing[0]}.  Add {missing[0]}: ... to it.")
         if missing:
-            raise MissingParameterError(f"every parameter must be on an axis or have a value, but "
-                                        f"{', '.join(map(str, missing))} is neither.  Give it in fixed={{...}}."
+            raise MissingParameterError(f"every parameter must be on an axis or have a value, but there is neither for "
+                                        f"{', '.join(map(str, missing))}.  Use fixed={{{missing[0]}: 1}}, say."
                                         + namesake(missing, (first.symbol, second.symbol, *numbers)))
         zeros = [s for row in F.P.rows for entry in row for _, _, monomial in entry
                  for s, e in parameters_of(monomial)[0] if e < 0 and member[s][0] == 0]
@@ -251,6 +251,10 @@ def _exact_expression(value: Any, symbol: Symbol) -> Expr:
 
 def fixed_numbers(fixed: Values | None, free: Iterable[Symbol]) -> dict[Symbol, Expr]:
     """The numbers that are fixed, exactly; raises for balls, and for what is on an axis or given by modes."""
+    for s in mapping_of(fixed):
+        if not isinstance(s, Symbol):
+            raise BadTypeError(f"fixed must map SymPy Symbols to numbers, but a key is {printed(s)}, a "
+                               f"{type(s).__name__}.  Use the Symbol itself: {{c: 1}}.")
     numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
     for s in free:
         if s in numbers:
@@ -281,7 +285,8 @@ def axis_of(given: Any, name: str) -> Axis:
         raise BadTypeError(f"{name} must be (Symbol, lo, hi), but it is {given!r}.  Use {name}=(a, -1, 5), say.")
     symbol, lo, hi = given[0], *(end_of_axis(end, f"an end of {given[0]}") for end in given[1:])
     if not lo < hi:
-        raise BadInputError(f"{name} must be an interval with lo < hi, but it is {printed(given)}.  Exchange the ends.")
+        raise BadInputError(f"{name} must be an interval with lo < hi, but it is {printed(given)}.  Give the smaller "
+                            "end first.")
     return Axis(symbol, lo, hi)
 
 

@@ -125,7 +125,7 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
     missing = sorted((s for s in needed if s not in given), key=str)
     if missing:
         names = ", ".join(map(str, missing))
-        raise MissingParameterError(f"every parameter needs a value, but {names} has none among {printed(given)}.  "
+        raise MissingParameterError(f"every parameter needs a value, but {names} got none among {printed(given)}.  "
                                     f"Add {names} to the values.{namesake(missing, given)}")
     exact = {s: (number or exact_number)(value, f"the value of {s}") for s, value in given.items()}
     for s, value in exact.items():
@@ -394,6 +394,9 @@ def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, d
     MissingParameterError
         if a parameter that occurs has no value.
     """
+    if isinstance(time, Mapping):
+        raise BadTypeError(f"the time must be a number, but it is {printed(time)}, a {type(time).__name__}.  Give it "
+                           "before the values: evaluate(1, {a: 2}).")
     needed = set().union(*map(free_symbols, series)) if series else set()
     exact = exact_values(values, needed, t)
     when = exact_number(time, "the time")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import numpy
 from fastpicard.optional import optional
 
@@ -17,6 +18,9 @@ def _matplotlib(part: str) -> Any:
 
 def _axes(ax: Any) -> Any:
     if ax is not None:
+        if not isinstance(ax, _matplotlib("axes").Axes):
+            raise BadTypeError(f"a picture is drawn into matplotlib's axes, but ax is {ax!r}.  Use one of those of "
+                               "plt.subplots(), or none.")
         return ax
     _, ax = _matplotlib("pyplot").subplots(figsize=(8, 5.5), constrained_layout=True)
     return ax
@@ -91,8 +95,11 @@ def raster(chart: Any, width: int, height: int) -> Any:
 
 def sampled(data: Any, ax: Any, xlabel: str | None, ylabel: str | None, title: str | None) -> Any:
     """A chart of points: stable and unstable shaded, undecided black, the boundary as the zero line of the margin."""
-    ax = _axes(ax)
     names = [str(name) for name in data["verdict"].dims]
+    if len(names) != 2:
+        raise BadInputError(f"a chart is drawn over two parameters, but of this one {len(names)} are left: {names}.  "
+                            "Use data.margin.plot(), which draws lines.")
+    ax = _axes(ax)
     x, y = (data[name].values for name in (names[1], names[0]))
     colours = numpy().array([_rgb(colour) for colour in (UNSTABLE, UNDECIDED, STABLE)])
     dx, dy = (x[1] - x[0]) / 2, (y[1] - y[0]) / 2

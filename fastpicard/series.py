@@ -200,8 +200,14 @@ class PoissonSeries:
 
     # -- calculus ------------------------------------------------------------
 
-    def diff(self) -> PoissonSeries:
-        """The derivative with respect to the time."""
+    def diff(self, t: Symbol | None = None) -> PoissonSeries:
+        """The derivative with respect to the time, which may be given as to SymPy's ``diff``.
+
+        Raises BadInputError for another variable.
+        """
+        if t is not None and t != self._t:
+            raise BadInputError(f"the derivative of a series is that by its time {self._t}, but the variable is {t}.  "
+                                f"Use as_expr().diff({t}) for a parameter.")
         return self._make(algebra.derivative(self._modes))
 
     def integrate(self) -> PoissonSeries:

@@ -122,7 +122,13 @@ def by_trace(trace: Any) -> Verdict:
 def _told_from(end: int, trace: Any) -> str:
     """A trace as printed: where few digits would hold the end of stability, how far from it."""
     shown = str(trace.str(12))
-    return shown if not arb(shown).contains(end) else f"{end} + {(trace - end).str(5)}"
+    if not arb(shown).contains(end):
+        return shown
+    gap = trace - end
+    apart, sign = str(abs(gap).str(5)), "+" if gap > 0 else "-"
+    if arb(apart).contains(0):  # no digit of it is known, but its sign
+        return f"{end} {sign} d, 0 < d < {(abs(gap).upper() * 1.1).str(2, radius=False)},"
+    return f"{end} {sign} {apart}"
 
 
 def _by_rho(discs: list[Disc], before: str) -> Verdict | None:

@@ -212,6 +212,8 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
         by the function, for a number beyond the doubles, or where a Symbol that is an integer is given another number.
     """
     names = _checked(params, collapsed.t)
+    if not isinstance(bound, bool):
+        raise BadTypeError(f"bound must be True or False, but it is {bound!r}.  Give all parameters in one list.")
     missing = sorted(collapsed.symbols - set(names), key=str)
     if missing:
         absent = ", ".join(map(str, missing))

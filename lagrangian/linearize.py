@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from itertools import compress
 from typing import Any
 
 from sympy import (
@@ -216,7 +217,10 @@ class LinearEquations:
 
     def __repr__(self) -> str:
         n, rest = len(self.scene), "" if not any(self.about) else f", about {self.about}"
-        return f"LinearEquations(A theta'' + stiffness theta = 0, A of shape ({n}, {n}){rest}, {self.scene})"
+        terms = ["A theta''", "damping theta'", "stiffness theta", "remainder"]
+        held = [True, any(self.damping), any(self.stiffness), any(self.remainder)]
+        left = " + ".join(compress(terms, held))
+        return f"LinearEquations({left} = 0, A of shape ({n}, {n}){rest}, {self.scene})"
 
     def _repr_latex_(self) -> str:
         terms = [(self.A, 2), (self.damping, 1), (self.stiffness, 0)]

@@ -60,7 +60,8 @@ class Links(Frozen):
         features = [name for name, values in named if values is not None]
         features += ["support at rest" if self.support.at_rest else "moving support"]
         side = "upright" if self.upright else "hanging"
-        return f"{type(self).__name__}({len(self)} {self.model}, {', '.join(features)}, {side})"
+        links = self.model if len(self) > 1 else self.model[:-1]
+        return f"{type(self).__name__}({len(self)} {links}, {', '.join(features)}, {side})"
 
     def _repr_latex_(self) -> str:
         side = "upright" if self.upright else "hanging"

@@ -59,9 +59,9 @@ def quantity(value: Any, name: str) -> Any:
     refuse_text(value, name)
     expression = _exact(value, name)
     if expression.has(nan, oo, -oo, zoo):
-        raise QuantityError(f"{name} is {expression}, which is not finite: give a finite number or a Symbol.")
+        raise QuantityError(f"{name} is {expression}, which is not finite: give a finite number.")
     if expression.is_real is False or (expression.is_number and expression.has(I) and not expression.is_real):
-        raise QuantityError(f"{name} is {expression}, which is not real: give a real number or a Symbol.")
+        raise QuantityError(f"{name} is {expression}, which is not real: give a real number.")
     return expression
 
 
@@ -115,7 +115,7 @@ def _exact(value: Any, name: str) -> Any:
     binary = isinstance(value, AnyMpf) and not isinstance(value, mpmath.mp.constant)
     if binary or (isinstance(value, (Decimal, Real)) and hasattr(value, "as_integer_ratio")):
         if not (mpmath.isfinite(value) if binary else math.isfinite(value)):
-            raise QuantityError(f"{name} is {value}, which is not finite: give a finite number or a Symbol.")
+            raise QuantityError(f"{name} is {value}, which is not finite: give a finite number.")
         return Rational(*_ratio(value))
     raise NotAQuantityError(
         f"{name} is {value!r} of type {type(value).__name__}, not a scalar: give a real number or a commutative "

@@ -90,7 +90,7 @@ def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEqua
     Ten seconds from 2 rad: 3 ms for two bobs (12 digits are left), 10 ms for five (8), 30 ms for ten (2), after a
     few seconds of translation once per machine.  These are true errors; the estimate claims two digits less.
     Of uniform rods two keep 9 digits, five one, ten none.  Two bobs with 28 digits: 0.03 to 0.12 s by machine, after
-    6 s of translation; with 50 digits 10 s.  A trajectory never claims what it has not: see ``trajectory.error``,
+    6 s of translation; with 50 digits 5 to 10 s.  A trajectory never claims what it has not: see ``trajectory.error``,
     ``.predictable_until`` and ``.verdict``.  ``benchmarks/chains.py motion`` measures what is left.
 
     >>> chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], upright=False)

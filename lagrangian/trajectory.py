@@ -31,8 +31,8 @@ class Trajectory:
     turns, wrapped : shape (m, n): ``theta = wrapped + 2 pi turns``, ``|wrapped| <= pi``, which keeps digits that theta
         itself cannot hold after many turns
     energy : shape (m,), in the frame of the support; J.  See :meth:`lagrangian.CompiledChain.energy`
-    error : shape (m,): estimated largest error of any angle up to each time; rad.  It is an estimate from a second,
-        tighter run with other rounding of the data, not a bound
+    error : shape (m,): estimated largest error of any angle up to each time; rad.  It is an estimate from
+        further runs with other rounding of the data, not a bound
     accuracy : the error that was asked for; rad
     method, steps, order : how the motion was found
     events : mapping of names to arrays of times, s, in the numbers of theta; see :class:`lagrangian.Crossing`

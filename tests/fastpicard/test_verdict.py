@@ -108,6 +108,15 @@ def test_a_millionth_beside_a_boundary_is_decided():
         assert MATHIEU.verdict({a: 0, b: star + distance}) == Verdict.UNSTABLE
 
 
+@pytest.mark.parametrize("power", [30, 58, 60])
+def test_the_sentence_tells_the_trace_from_the_end_of_stability(power):
+    """However near: what is printed does not contain -2, also where only the sign of the difference is known."""
+    reason = MATHIEU.verdict({a: Rational(1, 4), b: Rational(1, 10**power)}).reason
+    told = reason.split("the trace ")[1].split(" exceeds")[0]
+
+    assert told.startswith("-2 - d, 0 < d < 1.2e-119") if power == 60 else not (arb(told.removeprefix("-2 - ")) <= 0)
+
+
 def test_damped_systems_are_judged_without_the_trace():
     """|trace| < 2 proves nothing there: a negatively damped oscillator has a small trace and is unstable."""
     growing = {a: Rational(1, 3), b: Rational(1, 10), c: Rational(-1, 50)}

@@ -65,6 +65,15 @@ def test_modes_in_symbols_diagonalise_exactly():
     assert abs((U.T * A * U)[0, 1].evalf(40, chop=True)) < Rational(1, 10**30)
 
 
+def test_linear_equations_print_every_term_they_have():
+    """Damping and the remainder of horizontal driving too; without both, neither."""
+    rod, e, w = Rod.uniform(1, 1), Symbol("e"), Symbol("w")
+    full = linearize(euler_lagrange(Scene([rod], Support(xi=e * cos(w * t)), t=t, gravity=9, damping=[1])))
+    assert "A theta'' + damping theta' + stiffness theta + remainder = 0" in repr(full)
+    assert "A theta'' + damping theta' + stiffness theta = 0" in repr(full.homogeneous())
+    assert "A theta'' + stiffness theta = 0" in repr(linearize(euler_lagrange(Scene([rod], t=t, gravity=9))))
+
+
 def test_modes_are_exact_beyond_two_rods():
     """Five rods: roots of one irreducible polynomial; a common factor in symbols stays in front."""
     assert all(mu.has(CRootOf) for mu in normal_modes(linear([rod] * 5)).mu)
