@@ -26,7 +26,7 @@ from flint import arb, ctx
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol, latex
 
-from fastpicard.charted import axes_of, fixed_numbers, mapping_of, point_of
+from fastpicard.charted import axes_of, fixed_numbers, mapping_of, point_of, refuse_integer
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
@@ -82,7 +82,7 @@ def boundaries(F: FloquetMatrix) -> tuple[Boundary, ...]:
     if not isinstance(F, FloquetMatrix):
         raise BadTypeError(f"boundaries are those of a FloquetMatrix, but this is {F!r}.  Use FloquetMatrix(P, t, 20).")
     size, signs = F.shape[0], reversal(F.P)
-    if size % 2 or not known_structure(F.P).paired:
+    if size % 2 or not known_structure(F).paired:
         raise BadInputError("boundaries need multipliers in pairs lambda, 1/lambda, and those of this P do not come in "
                             "pairs (damping, say).  Use certify or F.verdict, which ask whether all are inside the "
                             "unit circle.")
@@ -183,7 +183,7 @@ class Boundary:
         self.label, self.parity = label, parity
         self._F, self._entries, self._combine, self._half = F, entries, combine, half
         self._columns = len(entries[0])
-        self._collapsed = {None: Collapsed([modes for row in entries for modes in row], F.t)}
+        self._collapsed = {None: F.collapse([modes for row in entries for modes in row])}
         self.symbols = tuple(sorted(self._collapsed[None].symbols, key=str))
         self._place = 0  # among all boundaries of F
 
@@ -217,7 +217,7 @@ class Boundary:
     def _of(self, symbol: Symbol | None) -> Collapsed:
         if symbol not in self._collapsed:
             rows = [derivative(modes, symbol) for row in self._entries for modes in row]
-            self._collapsed[symbol] = Collapsed(rows, self._F.t)
+            self._collapsed[symbol] = self._F.collapse(rows)
         return self._collapsed[symbol]
 
     def _dual(self, values: Mapping[Any, Any], symbols: Sequence[Symbol], slack: Any = None) -> list[Any]:
@@ -259,6 +259,7 @@ class Boundary:
         if not isinstance(x, Symbol):
             raise BadTypeError(f"the unknown must be a SymPy Symbol, but it is {x!r}.  Use one of "
                                f"{list(self.symbols)}.")
+        refuse_integer(x)
         if x not in self.symbols:
             raise BadInputError(f"the unknown must be one of the parameters {list(self.symbols)}, but it is {x}.  "
                                 f"Choose one of these.{namesake((x,), self.symbols)}")

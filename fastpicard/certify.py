@@ -24,7 +24,6 @@ from sympy import Symbol
 
 from fastpicard import plotting
 from fastpicard.charted import Axis, Charted, images, read_chart, refuse_phases
-from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import Values, ball, exact_number, numpy, upper_float
@@ -324,7 +323,7 @@ def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[lis
         order = order_for(majorant, period, REMAINDER)
         error = max(upper_float(x.upper()) for x in a_priori(majorant, period, order).entries())
         F = chart.F.to_order(order)
-    collapsed = Collapsed([modes for row in rule.entries(F) for modes in row], F.t)
+    collapsed = F.collapse([modes for row in rule.entries(F) for modes in row])
     found, bits = polynomials(chart, collapsed, boxes, REMAINDER)
     return [LocalMap(member, [error] * (F.shape[0] * F.shape[1]), bits) for member in found], order, error
 

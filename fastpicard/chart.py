@@ -126,14 +126,14 @@ def _is_exact(problem: Charted) -> bool:
 
 def _is_scalar(problem: Charted) -> bool:
     """Whether the trace alone decides."""
-    return problem.F.shape == (2, 2) and known_structure(problem.F.P).paired
+    return problem.F.shape == (2, 2) and known_structure(problem.F).paired
 
 
 def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     """Trace, margin, error and verdict at the points of a grid, shape (4, up, across)."""
     np = numpy()
     grid = [z.ravel() for z in np.meshgrid(xs, ys)]
-    known = known_structure(problem.F.P)
+    known = known_structure(problem.F)
     scalar = _is_scalar(problem)
     compute = _by_matrix if not scalar else _by_factors if _is_mirrored(problem.F.P) else _by_trace
     best: list[Array] = []
@@ -204,7 +204,7 @@ def _by_factors(problem: Charted, member: Member, grid: list[Array], *_: Any) ->
     """``trace = 2 + 4 B C`` from half the period: half the terms, and a far smaller remainder."""
     np = numpy()
     half = half_period(problem.F)
-    values, bounds = _evaluated(problem, member, Collapsed([half[0][1], half[1][0]], problem.F.t), grid)
+    values, bounds = _evaluated(problem, member, problem.F.collapse([half[0][1], half[1][0]]), grid)
     left, right = values
     with np.errstate(all="ignore"):
         down, up = _balance(problem, member, grid)

@@ -185,6 +185,10 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
                                     *(s for mode in given if isinstance(mode, Mapping) for s in mode)))
     if numbers:
         F = with_values(F, numbers)
+    waves = symbols_of(m for row in F.P.rows for entry in row for _, (q, _), _ in entry for m, _ in q)
+    if waves:
+        raise BadInputError(f"the frequencies of a chart must be numbers, but one contains {min(waves, key=str)}.  "
+                            "Give it a number in fixed={...}, or measure the time in units of it.")
     members = tuple(_member(mode, numbers, first.symbol, second.symbol) for mode in given)
     for member in members:
         missing = sorted((s for s in parameters(F) if s not in member), key=str)
@@ -228,9 +232,10 @@ def refuse_phases(F: FloquetMatrix) -> None:
 
 
 def parameters(F: FloquetMatrix) -> set[Symbol]:
-    """All parameters of ``P``."""
-    return {symbol for row in F.P.rows for modes in row for _, _, monomial in modes
-            for symbol, _ in parameters_of(monomial)[0]}
+    """All parameters of ``P``, in amplitudes and phases."""
+    modes = [key for row in F.P.rows for entry in row for key in entry]
+    return {s for _, _, monomial in modes for s, _ in parameters_of(monomial)[0]}.union(
+        *(symbols_of(m for m, _ in phase) for _, (_, phase), _ in modes))
 
 
 def with_values(F: FloquetMatrix, values: Mapping[Symbol, Expr]) -> FloquetMatrix:
@@ -273,6 +278,8 @@ def mapping_of(fixed: Values | None) -> Values:
 def axes_of(x: Any, y: Any) -> tuple[Axis, Axis]:
     """Two axes; raises as :func:`axis_of`, and where both are of one parameter."""
     first, second = axis_of(x, "x"), axis_of(y, "y")
+    for axis in (first, second):
+        refuse_integer(axis.symbol)
     if first.symbol.name == second.symbol.name:
         raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two, of "
                             "different names.")
@@ -288,6 +295,13 @@ def axis_of(given: Any, name: str) -> Axis:
         raise BadInputError(f"{name} must be an interval with lo < hi, but it is {printed(given)}.  Give the smaller "
                             "end first.")
     return Axis(symbol, lo, hi)
+
+
+def refuse_integer(symbol: Symbol) -> None:
+    """Raise BadInputError for a parameter that goes through all numbers, but is an integer by its assumptions."""
+    if symbol.is_integer:
+        raise BadInputError(f"a curve goes through all numbers between its ends, but {symbol} is an integer by its "
+                            "assumptions, which SymPy has made use of.  Use a Symbol without that assumption.")
 
 
 def point_of(start: Any) -> tuple[float, float]:

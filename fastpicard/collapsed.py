@@ -18,6 +18,7 @@ from flint import arb, ctx
 from sympy import Symbol
 
 from fastpicard import modes as algebra
+from fastpicard.errors import BadInputError, printed
 from fastpicard.evaluate import (
     Point,
     Values,
@@ -25,14 +26,15 @@ from fastpicard.evaluate import (
     exact_number,
     exact_values,
     free_symbols,
+    may_vanish,
     numpy,
     refine,
     to_number,
 )
 from fastpicard.horner import Exponents, program, run
-from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Modes
+from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes, as_polynomial
 from fastpicard.precision import working
-from fastpicard.ring import Monomial, expression_of, symbols_of
+from fastpicard.ring import Monomial, expression_of, symbols_of, to_expression
 
 REMEMBERED = 6  # precisions whose coefficients are kept
 
@@ -75,11 +77,13 @@ class Collapsed:
     constants : series
     t : Symbol
     time : the time at which the series are taken, an exact number
+    resonances : frequencies that were divided by, which may leave no trace where that was in front of a 0: there is no
+        value where one of them vanishes
     """
 
-    def __init__(self, constants: list[Modes], t: Symbol, time: Any = 0) -> None:
-        self.t, self.time = t, exact_number(time, "the time")
-        self.symbols = set().union(*map(free_symbols, constants)) if constants else set()
+    def __init__(self, constants: list[Modes], t: Symbol, time: Any = 0, resonances: tuple[Linear, ...] = ()) -> None:
+        self.t, self.time, self.resonances = t, exact_number(time, "the time"), resonances
+        self.symbols = symbols_of(m for q in resonances for m, _ in q).union(*map(free_symbols, constants))
         names = _variables(constants)
         parts = [_parts(modes, names) for modes in constants]
         self.variables = list(names)
@@ -103,10 +107,19 @@ class Collapsed:
         return found
 
     def balls(self, values: dict[Symbol, Any]) -> list[Any]:
-        """The constants at a point, at the working precision."""
+        """The constants at a point, at the working precision; raises BadInputError at a resonance."""
+        found = self.resonance(values)
+        if found is not None:
+            raise BadInputError(f"an iterate is divided by its frequencies, but {to_expression(as_polynomial(found))} "
+                                f"vanishes at {printed(values)}: a resonance.  Put these numbers into P, and iterate "
+                                "then.")
         point = Point(self.time, values)
         variables = [v.ball(point) for v in self.variables]
         return [arb(run(steps, row, variables)) for steps, row in zip(self.programs, self.coefficients(), strict=True)]
+
+    def resonance(self, values: dict[Symbol, Any]) -> Linear | None:
+        """A frequency that was divided by and vanishes, if there is one."""
+        return next((q for q in self.resonances if may_vanish(q, values)), None)
 
     def at(self, values: Values | None, digits: int | None) -> list[Any]:
         """The constants at one point, every digit right: see :func:`fastpicard.evaluate.evaluate`."""

@@ -65,7 +65,7 @@ class Criterion:
 
 def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
-    size, signs, known = F.shape[0], reversal(F.P), known_structure(F.P)
+    size, signs, known = F.shape[0], reversal(F.P), known_structure(F)
     if known.bounded:
         return Criterion(known.bounded, False, _whole, lambda rows: [], _all_positive, everywhere=True)
     balanced = signs is not None and 2 * signs.count(1) == size

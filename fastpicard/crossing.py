@@ -12,7 +12,7 @@ from flint import arb, arb_mat, fmpq
 from sympy import Symbol
 
 from fastpicard.boundaries import Boundary
-from fastpicard.charted import fixed_numbers, point_of
+from fastpicard.charted import fixed_numbers, point_of, refuse_integer
 from fastpicard.curves import exact_ball, resolved
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Point, Values, exact_values
@@ -71,6 +71,8 @@ def crossing(f: Boundary, g: Boundary, x: Symbol, y: Symbol, start: tuple[Any, A
     if not isinstance(x, Symbol) or not isinstance(y, Symbol) or x == y:
         raise BadTypeError(f"curves cross in a plane of two Symbols, but they are {x!r} and {y!r}.  Use "
                            "crossing(f, g, a, b, (0, 1)), say.")
+    for name in (x, y):
+        refuse_integer(name)
     names = (x, y)
     exact = exact_values(fixed_numbers(fixed, names), (f.parameters | g.parameters) - {x, y}, f._F.t)
     with working(192):

@@ -129,16 +129,27 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
                                     f"Add {names} to the values.{namesake(missing, given)}")
     exact = {s: (number or exact_number)(value, f"the value of {s}") for s, value in given.items()}
     for s, value in exact.items():
-        fraction = value.q != 1 if isinstance(value, fmpq) else isinstance(value, Expr) and not value.is_integer
-        if s.is_integer and fraction:
-            raise no_integer(s, value)
+        check_assumptions(s, value)
     return {s: exact[s] for s in needed}
 
 
-def no_integer(s: Symbol, value: Any) -> BadInputError:
-    """The refusal of a value that the assumptions of a Symbol exclude."""
-    return BadInputError(f"{s} is an integer by its assumptions, which SymPy has made use of, but its value is "
-                         f"{printed(value)}.  Give an integer, or use a Symbol without that assumption.")
+def check_assumptions(s: Symbol, value: Any) -> None:
+    """Raise BadInputError for a value that the assumptions of a Symbol exclude: SymPy has made use of them.
+
+    Zero is let pass where they say positive or negative: it is the end of what they allow.
+    """
+    exact = None if isinstance(value, arb) else value if isinstance(value, Expr) else sympy.Rational(
+        int(value.p), int(value.q))
+    low, high = (value < 0, value > 0) if exact is None else (exact.is_negative, exact.is_positive)
+    wrong = {"an integer": s.is_integer and exact is not None and not exact.is_integer,
+             "even": s.is_even and exact is not None and exact.is_odd,
+             "odd": s.is_odd and exact is not None and exact.is_even,
+             "positive": s.is_positive and low, "not negative": s.is_nonnegative and low,
+             "negative": s.is_negative and high, "not positive": s.is_nonpositive and high}
+    for what, excluded in wrong.items():
+        if excluded:
+            raise BadInputError(f"{s} is {what} by its assumptions, which SymPy has made use of, but its value is "
+                                f"{printed(value)}.  Give another value, or use a Symbol without that assumption.")
 
 
 def ball(value: Any) -> Any:
@@ -345,8 +356,11 @@ def _settle(x: Any, needed: int) -> Any:
         return x
     if x.contains(0) and x.rad() < arb(2) ** -(needed + EXTRA_BITS // 2):
         return arb(0)
+    if not x.is_finite():
+        raise BadInputError("a value must be finite, but there is none here: a pole of the coefficients.  Keep away "
+                            "from there.")
     raise BadInputError(f"the digits asked for cannot be had: the value lies in {x}.  Give exact parameters instead of "
-                        "balls with a radius, or check for a pole of the coefficients.")
+                        "balls with a radius.")
 
 
 def to_number(x: Any, digits: int | None) -> Any:
@@ -384,6 +398,12 @@ def upper_float(x: Any) -> float:
     top = x.upper()
     found = _to_float(top)
     return found if arb(found) >= top else math.nextafter(found, math.inf)
+
+
+def may_vanish(frequency: Linear, values: Mapping[Symbol, Any]) -> bool:
+    """Whether a frequency is 0 at exact numbers, or may be in balls."""
+    with working(256):
+        return bool(Point(arb(0), values).linear(frequency).contains(0))
 
 
 def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, digits: int | None) -> list[Any]:

@@ -24,12 +24,21 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
 from fastpicard.errors import BadInputError, printed
-from fastpicard.evaluate import Values, ball, check_digits, count_of_digits, exact_number, to_complex, upper_float
+from fastpicard.evaluate import (
+    Values,
+    ball,
+    check_digits,
+    count_of_digits,
+    exact_number,
+    may_vanish,
+    to_complex,
+    upper_float,
+)
 from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
 from fastpicard.matrix import AsMatrix, SeriesMatrix, latex_or_summary, number_matrix, place, read_matrix
-from fastpicard.modes import Modes
+from fastpicard.modes import Linear, Modes
 from fastpicard.parameters import BOUND_BITS, is_box, numbers_in, problem_at
 from fastpicard.period import check_period, whole_turns
 from fastpicard.picard import check_order
@@ -177,14 +186,24 @@ class FloquetMatrix(AsMatrix):
         return result
 
     @cached_property
+    def resonances(self) -> tuple[Linear, ...]:
+        """Frequencies that were divided by and may vanish: they make a number of turns that depends on parameters."""
+        return tuple(q for q in sorted(self.increments.divided)
+                     if symbols_of(m for m, _ in q) and whole_turns(q, self.length) is None)
+
+    def collapse(self, constants: list[Modes]) -> Collapsed:
+        """Constants made of the entries, as polynomials with coefficients to any precision."""
+        return Collapsed(constants, self.t, resonances=self.resonances)
+
+    @cached_property
     def collapsed(self) -> Collapsed:
-        """All entries, row by row, as polynomials with coefficients to any precision."""
-        return Collapsed(self._all(), self.t)
+        """All entries, row by row."""
+        return self.collapse(self._all())
 
     @cached_property
     def collapsed_trace(self) -> Collapsed:
         """The trace likewise."""
-        return Collapsed([self._trace()], self.t)
+        return self.collapse([self._trace()])
 
     def __getitem__(self, index: tuple[int, int]) -> Expr:
         """One entry, exact."""
@@ -353,7 +372,7 @@ class FloquetMatrix(AsMatrix):
                                 "them.  Measure the time in other units.") from None
 
     def _structure(self, exact: Mapping[Any, Any]) -> Structure:
-        return structure(self.P, exact, self.at(exact)[0].reversal is not None)
+        return structure(self.P, exact, self.at(exact)[0].reversal is not None, lambda q: not may_vanish(q, exact))
 
     def multipliers(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
         """The eigenvalues of the true Floquet matrix, complex or mpc, sorted by modulus, largest first.

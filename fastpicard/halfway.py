@@ -67,9 +67,9 @@ def _backwards(modes: Modes) -> Modes:
     return result
 
 
-def known_structure(P: SeriesMatrix) -> Structure:
+def known_structure(F: FloquetMatrix) -> Structure:
     """What ``P`` says of the multipliers at all values of the parameters."""
-    return structure(P, {}, reversal(P) is not None)
+    return structure(F.P, {}, reversal(F.P) is not None, lambda q: bool(whole_turns(q, F.length)))
 
 
 def half_period(F: FloquetMatrix) -> list[list[Modes]]:

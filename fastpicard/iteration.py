@@ -10,7 +10,7 @@ from fastpicard import modes as algebra
 from fastpicard.coordinates import Problem, problem
 from fastpicard.increments import Iterate, iterate
 from fastpicard.matrix import SeriesMatrix
-from fastpicard.modes import Modes
+from fastpicard.modes import Linear, Modes
 from fastpicard.ring import ONE
 from fastpicard.unpacking import to_modes, without_frequencies
 
@@ -34,6 +34,11 @@ class PackedIncrements:
         """Entry ``(i, j)`` of the sum."""
         return to_modes(self.problem, self.iterate.sums[j][i])
 
+    @property
+    def divided(self) -> frozenset[Linear]:
+        """Frequencies of which multiples were divided by; all are of the unit."""
+        return frozenset({algebra.linear(dict([self.problem.coordinates.unit]))})
+
     def whole_turns(self, i: int, j: int) -> Modes:
         """The same after a time in which every angle makes whole turns: powers of that time."""
         return to_modes(self.problem, without_frequencies(self.problem, self.iterate.sums[j][i]))
@@ -48,16 +53,18 @@ class SeriesIncrements:
     order: int
     sums: SeriesMatrix
     increment: SeriesMatrix
+    divided: frozenset[Linear] = frozenset()  # the frequencies that were divided by
 
     def to_order(self, n: int) -> SeriesIncrements:
         """The same up to order ``n``; only what is new is computed, but of a lower order everything."""
         if n < self.order:
             return in_series(self.P, self.first, n)
-        sums, newest = self.sums, self.increment
+        sums, newest, divided = self.sums, self.increment, set(self.divided)
         for _ in range(n - self.order):
             newest = (self.P @ newest).integrate()
             sums = sums + newest
-        return SeriesIncrements(self.P, self.first, n, sums, newest)
+            divided.update(angle[0] for row in newest.rows for modes in row for _, angle, _ in modes if angle[0])
+        return SeriesIncrements(self.P, self.first, n, sums, newest, frozenset(divided))
 
     def newest(self, i: int, j: int) -> Modes:
         """Entry ``(i, j)`` of ``I_n``."""

@@ -14,7 +14,7 @@ Of an odd number of multipliers in pairs one is 1, since ``det Phi(T) > 0``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import factorial
 from typing import Any
@@ -22,6 +22,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from fastpicard.matrix import SeriesMatrix
+from fastpicard.modes import Linear
 from fastpicard.ring import expression_of
 
 
@@ -41,8 +42,8 @@ class Structure:
     bounded: str
 
 
-def structure(P: SeriesMatrix, values: Mapping[Any, Any], reverses: bool) -> Structure:
-    """The structure of ``P`` with these values, where it is known whether it reverses in time.
+def structure(P: SeriesMatrix, values: Mapping[Any, Any], reverses: bool, moves: Callable[[Linear], bool]) -> Structure:
+    """The structure of ``P`` with these values, if it reverses in time, and of a frequency whether it is not 0.
 
     Exact: parameters with rational values are put in, all others stay symbols, so that a form that is found holds at
     every value of those.
@@ -50,7 +51,7 @@ def structure(P: SeriesMatrix, values: Mapping[Any, Any], reverses: bool) -> Str
     matrices = list(coefficients(P, values).values())
     forms = _with_a_regular_one(_invariant_forms(matrices, P.shape[0], -1))
     symmetric = _with_a_regular_one(_invariant_forms(matrices, P.shape[0], 1))
-    paired = bool(forms or symmetric) or reverses or keeps_area(P, values)
+    paired = bool(forms or symmetric) or reverses or _keeps_area(P, values, moves)
     bounded = ""
     if symmetric and _holds_definite(symmetric[1:]):
         bounded = "a positive definite quadratic form is constant along all solutions, so they stay on ellipsoids"
@@ -105,9 +106,9 @@ def _trace(X: Any) -> Any:
     return sum((X[i, i] for i in range(X.nrows())), fmpq(0))
 
 
-def keeps_area(P: SeriesMatrix, values: Mapping[Any, Any]) -> bool:
+def _keeps_area(P: SeriesMatrix, values: Mapping[Any, Any], moves: Callable[[Linear], bool]) -> bool:
     """Whether ``P`` is 2 x 2 and the mean of its trace vanishes, so that the determinant of ``Phi(T)`` is 1."""
-    still = [A for (_, (frequency, _), _), A in coefficients(P, values).items() if not frequency]
+    still = [A for (_, (q, _), _), A in coefficients(P, values).items() if not q or not moves(q)]
     return P.shape == (2, 2) and all(A.get((0, 0), fmpq(0)) + A.get((1, 1), fmpq(0)) == 0 for A in still)
 
 

@@ -24,10 +24,9 @@ from typing import Any
 from flint import arb, arb_mat
 from mpmath.libmp import dps_to_prec
 
-from fastpicard.collapsed import Collapsed
 from fastpicard.enclosure import mirrored, shortfall
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import Point, Values, check_digits, refine, upper_float
+from fastpicard.evaluate import Point, Values, check_digits, may_vanish, refine, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, reversal
 from fastpicard.precision import working
@@ -141,7 +140,8 @@ class Table:
     def _read(self, F: FloquetMatrix) -> None:
         """The coefficients, in rows and columns."""
         constants = [entry for row in half_period(F) for entry in row] if self.signs else F._all()
-        collapsed = Collapsed(constants, F.t)
+        collapsed = F.collapse(constants)
+        self.resonances = collapsed.resonances
         self.variables = collapsed.variables
         exponents = [[(m[:-1], m[-1] if m else 0) for m in row] for row in collapsed.exponents]
         self.rows = sorted({outer for row in exponents for outer, _ in row})
@@ -154,7 +154,9 @@ class Table:
                 self.coefficients[e * len(self.rows) + places[outer], inner] = next(balls) + 0  # rounded to the bits
 
     def over_period(self, values: Mapping[Any, Any]) -> Any:
-        """An ``arb_mat`` that contains ``Phi(T)``, or None far from the box."""
+        """An ``arb_mat`` that contains ``Phi(T)``, or None far from the box and at resonances."""
+        if any(may_vanish(q, values) for q in self.resonances):
+            return None
         found = self._iterate(values) + self._bound(values)
         try:
             return (mirrored(found, self.signs) if self.signs else found) ** self.turns

@@ -26,7 +26,6 @@ from mpmath.libmp import dps_to_prec
 from sympy import Matrix, Symbol, latex
 
 from fastpicard.charted import Charted, Exponents, read_chart
-from fastpicard.collapsed import Collapsed
 from fastpicard.criteria import criterion
 from fastpicard.errors import BadInputError, printed
 from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
@@ -226,7 +225,7 @@ class _Work:
             self.order = order_for(wider, half, radius * 1e-4)
             self.error = max(upper_float(z.upper()) for z in a_priori(wider, half, self.order).entries())
         G = chart.F.to_order(self.order)
-        collapsed = Collapsed([modes for row in criterion(chart.F).entries(G) for modes in row], G.t)
+        collapsed = G.collapse([modes for row in criterion(chart.F).entries(G) for modes in row])
         (functions,), self.bits = polynomials(chart, collapsed, whole, radius * 1e-8)
         with working(self.bits):
             self.local = LocalMap(functions + [_by_first(terms) for terms in functions], [self.error] * 8, self.bits)

@@ -31,8 +31,9 @@ from fastpicard import doubledouble
 from fastpicard.collapsed import Collapsed, Variable
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError, namesake
-from fastpicard.evaluate import Point, no_integer, numpy, to_number
+from fastpicard.evaluate import Point, check_assumptions, numpy, to_number
 from fastpicard.precision import working
+from fastpicard.ring import symbols_of
 
 Array = Any
 BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
@@ -89,6 +90,7 @@ class Evaluator:
         values, bounds = np.full((len(self.polynomials), size), np.nan), np.full((len(self.polynomials), size), np.inf)
         route = np.full(size, BALL, dtype=np.int8)
         finite = np.logical_and.reduce([np.ones(size, dtype=bool), *map(np.isfinite, columns)])
+        finite[self._resonant(columns, finite)] = False
         if self.limit >= 0:
             with np.errstate(all="ignore"):
                 for start in range(0, size, BLOCK):
@@ -98,6 +100,20 @@ class Evaluator:
         for i in np.flatnonzero((route == BALL) & finite):
             values[:, i], bounds[:, i] = self._ball([x[i] for x in columns])
         return values, bounds, route
+
+    def _resonant(self, columns: list[Array], finite: Array) -> Array:
+        """The places of points at which there is no value; each set of frequencies is tried once."""
+        np, found = numpy(), self.collapsed
+        occurring = symbols_of(m for q in found.resonances for m, _ in q)
+        names = [name for name in self.names if name in occurring]
+        if not names:
+            return []
+        places = np.flatnonzero(finite)
+        table = np.stack([x[places] for name, x in zip(self.names, columns, strict=True) if name in occurring])
+        points, inverse = np.unique(table, axis=1, return_inverse=True)
+        bad = [found.resonance({s: fmpq(*map(int, float(x).as_integer_ratio()))
+                                for s, x in zip(names, point, strict=True)}) is not None for point in points.T]
+        return places[np.array(bad, dtype=bool)[inverse.reshape(-1)]]
 
     def _block(self, columns: list[Array], finite: Array, values: Array, bounds: Array, route: Array) -> None:
         """Fill in what float64 and pairs can do for one block, at the finite points."""
@@ -199,6 +215,8 @@ def _ball_pair(x: Any) -> tuple[float, float]:
 
 # -- functions -----------------------------------------------------------------
 
+PLAIN = len(Symbol("x").assumptions0)  # a Symbol with more of them excludes some numbers
+
 
 def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, ...],
               bound: bool = False) -> Callable[..., Any]:
@@ -225,7 +243,7 @@ def vectorise(collapsed: Collapsed, params: Sequence[Symbol], shape: tuple[int, 
         if len(values) != len(names):
             raise BadTypeError(f"the function takes {len(names)} arguments {list(names)}, but {len(values)} were "
                                "given.  Give one number or array for each.")
-        arrays = _broadcast([_integers(name, _array(value)) for name, value in zip(names, values, strict=True)])
+        arrays = _broadcast([_allowed(name, _array(value)) for name, value in zip(names, values, strict=True)])
         outer = arrays[0].shape if arrays else ()
         found, errors, _ = evaluator([array.reshape(-1) for array in arrays])
         results = [x.T.reshape(outer + shape)[()] for x in ((found, errors) if bound else (found,))]
@@ -267,12 +285,14 @@ def _doubles(array: Array) -> Array:
     return doubles
 
 
-def _integers(name: Symbol, array: Array) -> Array:
+def _allowed(name: Symbol, array: Array) -> Array:
     """The same numbers, where the assumptions of the Symbol allow them."""
     np = numpy()
-    if name.is_integer:
-        for value in array[np.isfinite(array) & (array != np.floor(array))][:1]:
-            raise no_integer(name, value)
+    if len(name.assumptions0) > PLAIN:
+        finite = array[np.isfinite(array)]
+        ends = [finite.min(), finite.max()] if finite.size else []
+        for value in np.unique(finite) if name.is_integer else ends:
+            check_assumptions(name, fmpq(*float(value).as_integer_ratio()))
     return array
 
 

@@ -890,6 +890,43 @@ def test_a_symbol_that_is_an_integer_takes_integers_alone(value):
         F.evaluate({a: 1, n: value})
 
 
+@pytest.mark.parametrize("assumed, value, allowed", [
+    ("even", 1, 2), ("odd", 2, 1), ("positive", -1, 0), ("positive", arb(-2, 1e-3), arb(0, 1e-3)),
+    ("negative", sqrt(2), 0), ("nonnegative", -0.5, 0), ("nonpositive", Rational(1, 3), -1)], ids=shown)
+def test_a_value_is_what_the_symbol_says_it_is(assumed, value, allowed):
+    """SymPy has written sqrt(p**2) as p, and cos(m pi) as 1; 0 is let pass as the end of what is positive."""
+    s = Symbol("s", **{assumed: True})
+    F = FloquetMatrix([[0, 1], [-a - s * cos(t), 0]], t, 2)
+
+    assert F.remainder({a: 1, s: allowed}) > 0
+    with pytest.raises(BadInputError, match="s is .* by its assumptions"):
+        F.remainder({a: 1, s: value})
+    if not isinstance(value, arb):
+        assert F.lambdify([s, a])([float(allowed), np.nan], 1).shape == (2, 2, 2)
+        with pytest.raises(BadInputError, match="s is .* by its assumptions"):
+            F.lambdify([s, a])([float(allowed), float(value)], 1)
+
+
+def test_charts_and_curves_go_through_numbers_not_integers():
+    """A frequency, or a parameter that is an integer, is no axis; a phase without a value is named."""
+    n, w, phi = Symbol("n", integer=True), Symbol("w"), Symbol("phi")
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(n * t + 1), 0]]), t, 6)
+    G = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(w * t), 0]]), t, 6, 2 * pi / w)
+    H = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t + phi) - b * cos(2 * t), 0]]), t, 6)
+    for draw in (chart, certify):
+        for equation, match in ((F, "frequencies .* n"), (G, "frequencies .* w"), (H, "phi")):
+            with pytest.raises(BadInputError, match=match):
+                draw(equation, (a, 0, 1), (b, 0, 1))
+        with pytest.raises(BadInputError, match="n is an integer"):
+            draw(F, (a, 0, 1), (n, 1, 3), fixed={b: 1})
+    found = boundaries(F)[0]
+    for ask in (lambda: found.root(n, (1, 2), {a: 1, b: 1}),
+                lambda: found.follow((a, 0, 1), (n, 1, 3), (0.5, 2), {b: 1}),
+                lambda: crossing(found, found, a, n, (0.5, 2), {b: 1})):
+        with pytest.raises(BadInputError, match="n is an integer"):
+            ask()
+
+
 def test_parameters_missing_from_an_argument_list_are_named():
     """A function of a alone cannot know b."""
     F = FloquetMatrix(MATHIEU, t, 4)

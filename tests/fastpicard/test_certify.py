@@ -425,5 +425,7 @@ def test_phases_need_numbers():
     system = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t + c) - cos(2 * t) / 3, 0]]), t, 0)
 
     with pytest.raises(BadInputError, match="P has a phase with c.  Give it a number"):
+        certify(system, (a, -5, 5), (c, 0, 5), fixed={b: 1})
+    with pytest.raises(BadInputError, match="neither for c"):
         certify(system, (a, -5, 5), (b, 0, 5))
     assert certify(system, (a, 0.1, 0.12), (b, 0, 0.02), fixed={c: Rational(1, 3)}).undecided < 1

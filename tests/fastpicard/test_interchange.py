@@ -244,8 +244,8 @@ def test_the_reason_shows_what_it_claims():
     outside = F.verdict({a: Rational(1, 4), b: Rational(1, 10**40)})
     undecided = F.verdict({a: 1, b: Rational(1, 10**30)})
 
-    assert (inside, "trace 2 + [-1.97" in inside.reason) == (Verdict.STABLE, True)
-    assert (outside, "trace -2 + [-9.86" in outside.reason) == (Verdict.UNSTABLE, True)
+    assert (inside, "trace 2 - [1.97" in inside.reason) == (Verdict.STABLE, True)
+    assert (outside, "trace -2 - [9.86" in outside.reason) == (Verdict.UNSTABLE, True)
     assert (undecided, "differs from 2 by [+/- " in undecided.reason) == (Verdict.UNDECIDED, True)
 
 

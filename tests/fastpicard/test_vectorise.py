@@ -251,7 +251,7 @@ def test_a_symbol_that_is_an_integer_takes_no_other_number():
     for values in (0.5, [[2, 0.5], [np.nan, 1.5]], Fraction(1, 2)):
         with pytest.raises(BadInputError) as found:
             f(1, values)
-        assert str(found.value) == str(expected.value).replace("1/2", "0.5")
+        assert str(found.value) == str(expected.value)
     assert f(0.25, [2, np.inf]) == pytest.approx([F.trace_at({a: 0.25, n: 2}), np.nan], nan_ok=True)
 
 

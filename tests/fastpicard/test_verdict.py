@@ -5,6 +5,7 @@ import math
 import pickle
 
 import mpmath
+import numpy as np
 import pytest
 import sympy
 from flint import acb, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
@@ -21,9 +22,10 @@ from fastpicard import (
     chart,
     tabulate,
 )
+from fastpicard.halfway import known_structure
 from fastpicard.spectrum import in_rho, root_discs
 from fastpicard.stability import judge, schur_cohn
-from fastpicard.structure import Structure, is_definite, structure
+from fastpicard.structure import Structure, is_definite
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize
 from tests.fastpicard.test_reference_cases import cases, numbers, read, system
 
@@ -230,7 +232,7 @@ def test_an_indefinite_form_bounds_nothing():
     assert FloquetMatrix(Matrix([[0, cos(t) + 1], [cos(t) + 1, 0]]), t, 0).verdict() == Verdict.UNSTABLE
     boost = Matrix([[0, 1 + cos(t), 0], [1 + cos(t), 0, sin(t) / 9], [0, -sin(t) / 9, 0]])
     assert FloquetMatrix(boost, t, 0).verdict() == Verdict.UNSTABLE
-    assert not structure(FloquetMatrix(boost, t, 0).P, {}, False).bounded
+    assert not known_structure(FloquetMatrix(boost, t, 0)).bounded
 
 
 SQUARES = FloquetMatrix(Matrix([[0, 1, 0], [0, 0, 1], [2 * b * sin(t), -4 * a - 4 * b * cos(t), 0]]), t, 0)
@@ -262,6 +264,56 @@ def test_a_chart_of_odd_size_is_that_of_the_equation_it_is_made_of():
         assert int(proved[0].verdict(x, y)) * int(proved[1].verdict(x, y)) >= 0
 
 
+# -- resonances ------------------------------------------------------------------
+
+k, m = Symbol("k", integer=True), Symbol("m", integer=True)
+WAVES = FloquetMatrix(Matrix([[a * cos(k * t) * cos(m * t), 1], [-b, 0]]), t, 0)
+
+
+@pytest.mark.parametrize("at", [{k: 3, m: 3}, {k: 3, m: -3}, {k: 0, m: 0}, {k: (0, 0), m: 0}, {k: 3, m: 2},
+                                {k: 0, m: 1}], ids=str)
+def test_a_wave_that_stands_still_has_a_mean(at):
+    """Frequencies whose sum or difference vanishes: the determinant is that with the numbers put in before."""
+    values = {a: Rational(1, 5), b: Rational(1, 16), **at}
+    plain = {s: x[0] if isinstance(x, tuple) else x for s, x in at.items()}
+    alone = FloquetMatrix(WAVES.P.as_matrix().subs(plain), t, 0)
+
+    assert WAVES.verdict(values) == alone.verdict({a: Rational(1, 5), b: Rational(1, 16)})
+    assert ("determinant is 1" in WAVES.verdict(values).reason) == (plain[k] ** 2 != plain[m] ** 2)
+    for found, true in zip(WAVES.multipliers(values, 10), alone.multipliers(values, 10), strict=True):
+        assert abs(found - true) < 1e-9
+
+
+@pytest.mark.parametrize("order", [0, 1, 4])
+def test_an_iterate_has_no_value_where_it_was_divided_by_zero(order):
+    """And where it has one it is that of the iterate with the numbers put in before."""
+    F = FloquetMatrix(Matrix([[a * cos(k * t) * cos(m * t), b], [-cos(2 * t), 0]]), t, order)
+    for x in range(-3, 4):
+        for y in range(-3, 4):
+            values = {a: Rational(1, 5), b: Rational(3, 4), k: x, m: y}
+            plain = FloquetMatrix(F.P.as_matrix().subs({k: x, m: y}), t, order).evaluate(values, 20)
+            many, error = F.lambdify([a, b, k, m], bound=True)(0.2, 0.75, [x, x], y)
+            try:
+                found = F.evaluate(values, 20)
+            except BadInputError as refused:
+                assert "resonance" in str(refused)
+                assert np.isnan(many).all() and np.isinf(error).all()
+            else:
+                with mpmath.workdps(30):
+                    assert max(abs(z) for z in found - plain) < 1e-18
+                assert abs(many[0] - np.array(plain.tolist(), dtype=float)).max() < 1e-14
+
+
+def test_a_table_is_not_read_at_a_resonance():
+    """The iterate it holds is not that of the equation there."""
+    F = FloquetMatrix(Matrix([[c * cos(k * t)]]), t, 0)
+    G = tabulate(F, {c: (0, Rational(1, 10)), k: (0, 2)}, 4)
+
+    for x in (0, 1):
+        inside = G.enclosure({c: Rational(1, 10), k: x}, 4)[0, 0]
+        assert inside.overlaps(arb(1) if x else (arb.pi() / 5).exp())
+
+
 # -- the pieces ------------------------------------------------------------------
 
 
@@ -276,7 +328,7 @@ def test_the_symplectic_form_is_found_where_there_is_one():
     damped = second - Matrix([[zero, zero], [zero, one / 7]])
 
     for P, exists in ((second, True), (hamiltonian, True), (damped, False)):
-        forms = structure(FloquetMatrix(P, t, 0).P, {}, False).forms
+        forms = known_structure(FloquetMatrix(P, t, 0)).forms
         assert bool(forms) == exists
         for form in forms[:1]:
             W = Matrix(4, 4, [Rational(int(x.p), int(x.q)) for x in form.entries()])
