@@ -234,6 +234,8 @@ class FloquetMatrix(AsMatrix):
         ------
         MissingParameterError
             if a parameter has no value.
+        BadInputError
+            at a resonance: where a frequency with a Symbol in it vanishes that the iterate was divided by.
         """
         return number_matrix(self.collapsed.at(values, digits), self.shape, check_digits(digits))
 
@@ -467,7 +469,7 @@ class FloquetMatrix(AsMatrix):
         Every entry is right to 10 ulp of the largest entry of the n-th iterate at its point that a double can hold.
         The cheapest arithmetic that is proved to do it is taken point by point: float64, pairs of float64, balls.
         Arguments are the doubles they round to.  Where the value is beyond the largest double it is infinite; where
-        there is none it is nan: at a pole, and where a parameter that occurs is nan or infinite.
+        there is none it is nan: at a pole or resonance, and where a parameter that occurs is nan or infinite.
 
         Parameters
         ----------
