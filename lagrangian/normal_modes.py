@@ -25,14 +25,12 @@ from sympy import (
     Dummy,
     Eq,
     Function,
-    ImmutableDenseMatrix,
     Integer,
     Poly,
     cancel,
     cos,
     expand,
     latex,
-    radsimp,
     sqrt,
 )
 
@@ -41,6 +39,7 @@ from .eigen import eigenpairs
 from .energy import Scene
 from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError, printed
 from .linearize import LinearEquations
+from .quadratic import modes_in_radicals
 from .quantities import refuse_text
 
 __all__ = ["NormalModes", "normal_modes"]
@@ -159,7 +158,7 @@ def normal_modes(lin: LinearEquations, digits: int | None = None) -> NormalModes
     factor, B = _factor(scaled)
     A, n = scaled.A, len(lin.scene)
     if n <= 2 and digits is None:
-        mu, U = _closed_form(A, B)
+        mu, U = modes_in_radicals(A, B)
         return NormalModes(lin.scene, mu, U, A, B, factor)
     unit, A0, B0 = _in_numbers(A, B)
     rational = digits is None and all(x.is_Rational for x in (*A0, *B0))
@@ -218,29 +217,6 @@ def _two_unlike(lin: LinearEquations) -> str:
     entries = [x for x in lin.stiffness if x != 0]
     unlike = next(x for x in entries if lin.t in cancel(x / entries[0]).free_symbols or x is entries[-1])
     return f"{entries[0]} and {unlike}"
-
-
-def _closed_form(A: Any, B: Any) -> tuple[tuple[Any, ...], Any]:
-    """mu and U of one or two rods, in radicals."""
-    if A.rows == 1:
-        return (cancel(B[0] / A[0]),), ImmutableDenseMatrix([[1]])
-    determinant = A[0, 0] * A[1, 1] - A[0, 1] ** 2
-    half = cancel((A[1, 1] * B[0, 0] + A[0, 0] * B[1, 1] - 2 * A[0, 1] * B[0, 1]) / (2 * determinant))
-    spread = sqrt(cancel(half**2 - (B[0, 0] * B[1, 1] - B[0, 1] ** 2) / determinant))
-    if spread == 0:
-        return (half, half), ImmutableDenseMatrix([[1, -A[0, 1] / A[0, 0]], [0, 1]])
-    mu = (half - spread, half + spread)
-    columns = [_kernel(B - x * A) for x in mu]
-    return mu, ImmutableDenseMatrix([[u[k] for u in columns] for k in (0, 1)])
-
-
-def _kernel(G: Any) -> tuple[Any, Any]:
-    """A vector with ``G u = 0`` for a symmetric singular G that is not 0, its last component 1 where it can be."""
-    p, q, r = G[0, 0], G[0, 1], expand(G[1, 1])
-    if expand(q) == 0:
-        return (Integer(1), Integer(0)) if r != 0 else (Integer(0), Integer(1))
-    ratio = expand(-q) / expand(p)
-    return (expand(radsimp(ratio)) if ratio.is_number else ratio), Integer(1)
 
 
 def _in_numbers(A: Any, B: Any) -> tuple[Any, Any, Any]:

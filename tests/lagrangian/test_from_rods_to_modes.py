@@ -5,12 +5,12 @@ from pathlib import Path
 
 import mpmath
 import pytest
-from sympy import CRootOf, Matrix, Rational, Symbol, cos, count_ops, exp, expand, pi, sin, sqrt, symbols
+from sympy import CRootOf, Matrix, Rational, Symbol, cancel, cos, count_ops, exp, expand, pi, sin, sqrt, symbols
 
 import lagrangian
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize, normal_modes
 
-m, l, g, t, epsilon, omega0, h, v = symbols("m l g t epsilon omega0 h v")
+m, l, g, k, t, epsilon, omega0, h, v = symbols("m l g k t epsilon omega0 h v")
 driven = Support(eta=epsilon * cos(omega0 * t))
 rod = Rod.uniform(m, l)
 
@@ -63,6 +63,29 @@ def test_modes_in_symbols_diagonalise_exactly():
 
     assert max(abs(x.evalf(40, chop=True)) for x in residual) < Rational(1, 10**30)
     assert abs((U.T * A * U)[0, 1].evalf(40, chop=True)) < Rational(1, 10**30)
+
+
+@pytest.mark.parametrize("rods, options, mu", [
+    ([Rod.bob(m, l), Rod(m, l, 0, l)], {}, {0, 1 / l}),
+    ([Rod.bob(m, l), Rod(m, l, 0, l)], {"gravity": 0, "springs": [k, 0]}, {0, k / (2 * l**2 * m)}),
+    ([Rod.bob(m, l), Rod(m, l, 0, l)], {"springs": [1, 0]}, {0, 1 / (2 * l**2 * m) - g / l}),
+    ([Rod.bob(m, l), Rod(pi * m, l, l / 7, l)], {"gravity": 0, "springs": [k, 0]},
+     {0, 49 * k / (l**2 * m * (49 + 48 * pi))}),
+    ([Rod.bob(m, l)] * 2, {"gravity": 0, "springs": [k, 0]}, {0, k / (l**2 * m)}),
+    ([Rod.bob(sqrt(2) * m, l), Rod(sqrt(3) * m, l, l / 7, l)], {"gravity": 0, "springs": [0, k]}, None),
+    ([Rod.bob(1, 1), Rod(pi, 1, 0, 1)], {"gravity": 3}, {0, 1}),
+    ([Rod.bob(1, 1), Rod(pi, 1, 0, 1)], {"gravity": 0, "springs": [1, 1]}, None),
+], ids=str)
+def test_modes_of_rods_that_come_apart_are_two(rods, options, mu):
+    """U is regular and A-orthogonal, and B U = A U mu, where an entry of U is 0 for one of the two mu."""
+    modes = normal_modes(linear(rods, Support(), **options))
+    numbers = {m: Rational(2, 3), l: Rational(5, 7), g: 11, k: Rational(13, 17)}
+    A, B, U = (x.xreplace(numbers).evalf(50) for x in (modes.A, modes.B, modes.U))
+    residual = B * U - A * U * Matrix.diag(*(x.xreplace(numbers) for x in modes.mu))
+
+    assert mu is None or all(any(expand(cancel(x - y)) == 0 for y in modes.mu) for x in mu)
+    assert abs(U.det()) > Rational(1, 10)
+    assert max(map(abs, (*residual.evalf(40), (U.T * A * U)[0, 1]))) < Rational(1, 10**30)
 
 
 def test_linear_equations_print_every_term_they_have():
