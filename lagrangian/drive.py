@@ -123,9 +123,9 @@ def natural_scales(scene: Scene, omega0: Any) -> tuple[Scale, ...]:
         h = fresh_symbol("h", scene, omega0, {amplitude: amplitude / rod.length})
         scales.append(Scale(h, amplitude / rod.length, amplitude, h * rod.length))
     if isinstance(omega0, Symbol) and not g.is_zero and not g.is_negative:
-        speed = omega0 * sqrt(rod.length / g)
-        v = fresh_symbol("v", scene, omega0, {omega0: speed})
-        scales.append(Scale(v, speed, omega0, v * sqrt(g / rod.length)))
+        second = sqrt(rod.length / g)  # of which 1/sqrt(g/l) is the negative where g < 0
+        v = fresh_symbol("v", scene, omega0, {omega0: omega0 * second})
+        scales.append(Scale(v, omega0 * second, omega0, v / second))
     return tuple(scales)
 
 

@@ -163,7 +163,20 @@ def test_damped_rods_keep_their_damping():
     c = symbols("c")
     P, _, _ = linear([rod], damping=[c]).first_order(omega0)
 
-    assert expand(P[1, 1] + 3 * c / (m * l**2 * v * sqrt(g / l))) == 0
+    assert expand(P[1, 1] + 3 * c * sqrt(l / g) / (m * l**2 * v)) == 0
+
+
+@pytest.mark.parametrize("gravity", [9, -9])
+@pytest.mark.parametrize("symbol", [g, g + 1, Symbol("g", real=True)], ids=str)
+def test_v_means_the_same_for_gravity_of_either_sign(symbol, gravity):
+    """What v stands for, put in, gives the P of the scene's symbols, the damping with it, not its negative."""
+    lin = linear([rod] * 2, damping=[3, 5], gravity=symbol)
+    system, plain = lin.first_order(omega0), lin.first_order(omega0, dimensionless=False)
+    numbers = {m: 2, l: 3, epsilon: Rational(1, 7), omega0: 11, **dict.fromkeys(symbol.free_symbols, gravity)}
+    difference = system.P.xreplace(dict(system.where)) - plain.P
+
+    assert v in system.P.free_symbols
+    assert difference.xreplace(numbers).applyfunc(expand).is_zero_matrix
 
 
 def test_unequal_rods_keep_their_symbols():
