@@ -86,6 +86,12 @@ class CompiledChain(Links):
     ('rods', array([0., 0.]))
     """
 
+    def __init__(self, mass: Any, length: Any, center: Any, gyration: Any, gravity: Any = 9.81,
+                 support_acceleration: Any = (0, 0), damping: Any = None, springs: Any = None, upright: bool = True,
+                 model: str | None = None) -> None:
+        super().__init__(mass, length, center, gyration, gravity, support_acceleration, damping, springs, upright,
+                         model)
+
     def acceleration(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` at time t; rad/s**2.
 

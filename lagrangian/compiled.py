@@ -26,6 +26,7 @@ from .equations import EquationsOfMotion
 from .errors import DriveError, NotASceneError, QuantityError, SceneError
 from .frozen import Frozen
 from .machine import has_numba
+from .quantities import one_array
 from .states import float_state, float_time
 
 __all__ = ["CompiledEquations", "compile_equations"]
@@ -108,7 +109,7 @@ class CompiledEquations(Frozen):
         return array.tolist()  # type: ignore[no-any-return]
 
     def _exact(self, values: Any, name: str) -> list[Any]:
-        n, array = len(self.chain), np.asarray(values, dtype=object)
+        n, array = len(self.chain), one_array(values, name)
         if array.shape != (n,):
             raise SceneError(f"the chain has {n} rods, and {name} has shape {array.shape}: give {n} numbers.")
         found: list[Any] = MPNumbers(mpmath.mp).array(array).tolist()

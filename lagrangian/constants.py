@@ -10,7 +10,7 @@ centre of percussion is near its end, loses no digits here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,17 @@ from sympy.core.relational import Relational
 from .angles import product
 from .errors import NotAQuantityError, QuantityError, SceneError, printed
 from .frozen import locked
-from .quantities import namesakes, quantity, real_number, refuse_mask, refuse_text, refuse_unordered, to_float
+from .quantities import (
+    is_list,
+    namesakes,
+    one_array,
+    quantity,
+    real_number,
+    refuse_mask,
+    refuse_text,
+    refuse_unordered,
+    to_float,
+)
 
 __all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
            "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
@@ -73,7 +83,7 @@ def column(values: Any, name: str) -> Any:
             bad = values[~np.isfinite(values)][0]
             raise QuantityError(f"{name} holds {bad}, which is not finite: give finite numbers.")
         return values.astype(np.float64)
-    if isinstance(values, (int, float)) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) == 0:
+    if not is_list(values):
         raise NotAQuantityError(f"{name} is {printed(values, repr)}: give a list with one {name} for each rod.")
     found = list(values)
     if all(type(x) is float for x in found):
@@ -194,7 +204,7 @@ def one_by_one(values: Mapping[Any, Any] | None) -> list[Mapping[Any, Any]]:
     """The values of every chain, where some Symbols have an array of one number a chain; empty where none has."""
     if not isinstance(values, Mapping):
         return []
-    many = {symbol: np.asarray(x, dtype=object) for symbol, x in values.items()
+    many = {symbol: one_array(x, f"the value of {symbol}") for symbol, x in values.items()
             if isinstance(x, (np.ndarray, list, tuple))}
     shapes = {x.shape for x in many.values()}
     if len(shapes) > 1 or any(len(shape) != 1 or not shape[0] for shape in shapes):

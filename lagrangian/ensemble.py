@@ -17,10 +17,11 @@ import numpy as np
 from .arithmetic import arithmetic_of
 from .chain import CompiledChain
 from .constants import NAMES, check_damping, check_joints, checked, float_row
-from .errors import QuantityError, SceneError
+from .errors import NotAQuantityError, QuantityError, SceneError, printed
 from .frozen import Frozen, locked
 from .lanes import accelerate_rows, accelerate_together, in_lanes
 from .machine import has_numba, machine
+from .quantities import one_array
 from .redone import in_pairs, rows_in_pairs
 from .shaking import shaking_of
 from .states import float_time, floats, is_plain, why_no_answer
@@ -71,7 +72,8 @@ class Ensemble(Frozen):
                  upright: bool = True) -> None:
         names = (*NAMES, "damping", "springs")
         given = {name: floats(values, name) for name, values in
-                 zip(names, (mass, length, center, gyration, damping, springs), strict=True) if values is not None}
+                 zip(names, (mass, length, center, gyration, damping, springs), strict=True)
+                 if values is not None or name in NAMES}
         arrays = _repeated(given)
         self._columns = checked([arrays[name] for name in NAMES])
         joints = [arrays.get(name) for name in ("damping", "springs")]
@@ -91,7 +93,8 @@ class Ensemble(Frozen):
     def __getitem__(self, j: Any) -> Any:
         """Chain j, a :class:`lagrangian.CompiledChain`; of a slice the ensemble of its chains.
 
-        Raises IndexError where there is no chain j, SceneError where a slice holds none.
+        Raises IndexError where there is no chain j, NotAQuantityError where j is no integer, SceneError where a slice
+        holds none.
         """
         if isinstance(j, slice):
             return Ensemble(*self._constants_of(j))
@@ -154,8 +157,7 @@ class Ensemble(Frozen):
 
     def _exactly(self, t: Any, theta: Any, omega: Any) -> Any:
         """``theta''`` in another arithmetic, of one chain after the other."""
-        theta, omega = (self._checked(np.asarray(x, dtype=object), name) for x, name in
-                        ((theta, "theta"), (omega, "omega")))
+        theta, omega = (self._checked(one_array(x, name), name) for x, name in ((theta, "theta"), (omega, "omega")))
         return np.stack([chain.acceleration(t, *state) for chain, *state in zip(self, theta, omega, strict=True)])
 
     def _again(self, t: Any, doubtful: Any, theta: Any, omega: Any) -> Any:
@@ -214,11 +216,17 @@ class Ensemble(Frozen):
 
 
 def place(j: Any, count: int, these: str) -> int:
-    """Chain j of ``count``, counted from the end where j is negative; IndexError where there is none."""
+    """Chain j of ``count``, counted from the end where j is negative; IndexError where there is none.
+
+    Raises NotAQuantityError for what is no integer.
+    """
     try:
         return range(count)[index(j)]
     except IndexError:
-        raise IndexError(f"{these} {count} chains, counted from 0, and {j} is none of them.") from None
+        raise IndexError(f"{these} {count} chains, counted from 0, and {printed(j)} is none of them.") from None
+    except TypeError:
+        raise NotAQuantityError(f"{these} {count} chains, counted from 0, and {printed(j, repr)} is no integer: give "
+                                f"one, or a slice.") from None
 
 
 def _repeated(given: dict[str, Any]) -> dict[str, Any]:

@@ -54,7 +54,7 @@ from .errors import (
     printed,
 )
 from .inverse import inverse
-from .quantities import quantity, refuse_text, refuse_unordered
+from .quantities import is_list, quantity, refuse_text, refuse_unordered, truth
 from .scene import column
 
 __all__ = ["FirstOrderSystem", "LinearEquations", "linearize"]
@@ -179,7 +179,7 @@ class LinearEquations:
         NameClashError
             The scene uses a Symbol called tau, h or v for something else, or one called like omega0 that is another.
         QuantityError, NotAQuantityError, TextError
-            omega0 is zero, depends on time, or is not a number or expression.
+            omega0 is zero, depends on time, or is not a number or expression; dimensionless is no truth value.
 
         Speed and accuracy: with equal rods A is a matrix of numbers and its inverse is immediate.  The inverse for N
         rods with all-different symbols is a quotient of polynomials that grows fast with N.
@@ -200,7 +200,7 @@ class LinearEquations:
                 f"with them the stability of the linear equations, are those of that part.  What the forced motion "
                 f"itself does to stability is of second order in the horizontal amplitude, and not in these equations."
             )
-        scales = natural_scales(self.scene, omega0) if dimensionless else ()
+        scales = natural_scales(self.scene, omega0) if truth(dimensionless, "dimensionless") else ()
         tau = fresh_symbol("tau", self.scene, omega0)
         lin = self.divided() if self.scene.equal_rod else self
         A_inverse = inverse(lin.A)
@@ -286,7 +286,7 @@ def _rest_angles(about: Iterable[Any] | None, scene: Scene) -> tuple[Any, ...]:
         return (Integer(0),) * len(scene)
     refuse_text(about, "about")
     refuse_unordered(about, "about")
-    if not isinstance(about, Iterable):
+    if not is_list(about):
         raise NotAQuantityError(f"about is {printed(about, repr)}: give a list of {len(scene)} angles.")
     angles = tuple(quantity(angle, f"about[{i}]") for i, angle in enumerate(about))
     if len(angles) != len(scene):
@@ -315,7 +315,14 @@ def _remainder(rest: tuple[Any, ...], moments: list[Any], pushes: list[Any]) -> 
 
 def _first_turned(moments: list[Any]) -> int | None:
     """The index of the first moment that is not 0 at all times."""
-    return next((i for i, moment in enumerate(moments) if moment != 0 and moment.equals(0) is not True), None)
+    return next((i for i, moment in enumerate(moments) if not _is_zero(moment)), None)
+
+
+def _is_zero(moment: Any) -> bool:
+    try:
+        return moment == 0 or moment.equals(0) is True
+    except ValueError:  # SymPy prints what it puts in order, and Python no integers of thousands of digits
+        return False
 
 
 def _inertia(scene: Scene) -> Any:

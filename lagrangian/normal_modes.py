@@ -40,7 +40,7 @@ from .energy import Scene
 from .errors import InhomogeneousError, NotASceneError, NotDecoupledError, NotPeriodicError, QuantityError, printed
 from .linearize import LinearEquations
 from .quadratic import modes_in_radicals
-from .quantities import refuse_text
+from .quantities import refuse_text, truth
 
 __all__ = ["NormalModes", "normal_modes"]
 
@@ -111,7 +111,7 @@ class NormalModes:
                 f"with tau = {omega0}*{self.scene.t}: choose omega0 and the origin of time so that the drive is "
                 f"epsilon*cos(omega0*{self.scene.t}), or use first_order."
             )
-        scales = natural_scales(self.scene, omega0) if dimensionless else ()
+        scales = natural_scales(self.scene, omega0) if truth(dimensionless, "dimensionless") else ()
         a, b = (in_scales(found.get((q, 0), Integer(0)) / omega0**2, scales) for q in (0, 1))
         return tuple((expand(mu * a), expand(mu * b)) for mu in self.mu)
 

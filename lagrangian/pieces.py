@@ -22,7 +22,7 @@ from sympy import pi
 from .angles import TURN, TURN_LOW
 from .arithmetic import Balls
 from .digits import Piece, bits_for, magnitude, middle, numbers, whole_turns
-from .errors import QuantityError
+from .errors import QuantityError, printed
 from .floats import split
 from .precision import working
 from .quantities import quantity, refuse_text
@@ -57,13 +57,13 @@ class Pieces:
         Raises QuantityError where a time is none, or lies outside the span; TextError for text.
         """
         refuse_text(t, "t")
-        if np.ndim(t) > 1:
+        if (axes := _axes(t)) > 1:
             raise QuantityError(f"t has shape {np.shape(t)}: give one time, or a list of times.")
         with working(self.bits):
             times = self.given(t)
             steps = self.holding(times)
             theta, omega = self.states(steps, times - self.start[steps])
-        return (theta[0], omega[0]) if np.ndim(t) == 0 else (theta, omega)
+        return (theta[0], omega[0]) if axes == 0 else (theta, omega)
 
     def holding(self, times: Any) -> Any:
         """The step that each time lies in; shape (k,)."""
@@ -111,6 +111,13 @@ class Pieces:
     def rate(self, step: int, rod: int, h: Any) -> Any:
         """The rate of a rod ``h`` after the start of a step; rad/s."""
         raise NotImplementedError
+
+
+def _axes(t: Any) -> int:
+    try:
+        return np.ndim(t)
+    except ValueError:  # lists of unequal length
+        raise QuantityError(f"t is {printed(t, repr)}: give one time, or a list of times.") from None
 
 
 def _exact(t: Any) -> list[Any]:

@@ -7,7 +7,7 @@ A float is the dyadic number that it is: 0.5 is 1/2, and 0.1 is 3602879701896397
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from decimal import Decimal
 from numbers import Integral, Rational as AnyRational, Real
 from typing import Any
@@ -17,10 +17,10 @@ import mpmath
 import numpy as np
 from sympy import Catalan, E, EulerGamma, Expr, Float, GoldenRatio, I, Integer, Rational, log, nan, oo, pi, zoo
 
-from .errors import NotAQuantityError, QuantityError, TextError
+from .errors import NotAQuantityError, QuantityError, SceneError, TextError, printed
 
-__all__ = ["AnyMpf", "high_low", "namesakes", "quantity", "real_number", "refuse_mask", "refuse_text",
-           "refuse_unordered", "to_float"]
+__all__ = ["AnyMpf", "high_low", "is_list", "namesakes", "one_array", "quantity", "real_number", "refuse_mask",
+           "refuse_text", "refuse_unordered", "to_float", "truth"]
 
 AnyMpf = mpmath.ctx_mp_python._mpf  # of whatever context
 _NAMED = (  # mpmath's constants of any precision: equal to their roundings, so they are told apart by identity
@@ -49,6 +49,27 @@ def refuse_mask(values: Any, name: str) -> None:
     """Raise :class:`NotAQuantityError` for an array of which some entries are masked."""
     if isinstance(values, np.ma.MaskedArray):
         raise NotAQuantityError(f"{name} is an array with a mask, and every entry counts here: give an array without.")
+
+
+def is_list(values: Any) -> bool:
+    """Whether there are entries to ask for: an array without axes has none, though NumPy's arrays are all iterable."""
+    return isinstance(values, Iterable) and getattr(values, "ndim", 1) != 0
+
+
+def one_array(values: Any, name: str) -> Any:
+    """``values`` as an array of objects; :class:`SceneError` where they are arrays or Matrices that make none."""
+    try:
+        return np.asarray(values, dtype=object)
+    except ValueError:
+        raise SceneError(f"{name} is {printed(values, repr)}, whose parts have shapes that make no array together: "
+                         f"give numbers, in lists of one length or in one array.") from None
+
+
+def truth(value: Any, name: str) -> bool:
+    """A truth value; :class:`NotAQuantityError` for anything else, of which many have none."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise NotAQuantityError(f"{name} is {printed(value, repr)}, which is no truth value: give True or False.")
+    return bool(value)
 
 
 def quantity(value: Any, name: str) -> Any:

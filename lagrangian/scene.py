@@ -52,7 +52,7 @@ from sympy import (
 from sympy.core.function import AppliedUndef
 
 from .errors import DriveError, NotAQuantityError, QuantityError, SceneError, printed
-from .quantities import quantity, refuse_text, refuse_unordered
+from .quantities import is_list, quantity, refuse_text, refuse_unordered
 
 __all__ = ["Arrangement", "Rod", "Support"]
 
@@ -271,7 +271,7 @@ class Arrangement:
 def _rods(rods: Any) -> tuple[Rod, ...]:
     refuse_text(rods, "rods")
     refuse_unordered(rods, "rods")
-    if isinstance(rods, (int, Rod)) or not isinstance(rods, Iterable):
+    if isinstance(rods, (int, Rod)) or not is_list(rods):
         raise SceneError(
             f"rods is {printed(rods, repr)}: the number N of rods is positive and is the length of a list, so give N "
             f"rods, as in [Rod.uniform(m, l)] * N with N >= 1."
@@ -295,7 +295,7 @@ def _one_a_joint(values: Any, name: str, count: int) -> tuple[Any, ...] | None:
         return None
     refuse_text(values, name)
     refuse_unordered(values, name)
-    if not isinstance(values, Iterable):
+    if not is_list(values):
         raise NotAQuantityError(f"{name} is {printed(values, repr)}: give a list with one value for each of the "
                                 f"{count} joints.")
     joints = tuple(quantity(value, f"{name}[{i}]") for i, value in enumerate(values))

@@ -32,7 +32,7 @@ from .equations import EquationsOfMotion
 from .errors import DriveError, NotAQuantityError, NotASceneError, QuantityError, SceneError, printed
 from .floats import FINEST, ORDER, FloatRun, integrate_floats, split, wrapped
 from .pieces import BallPieces, FloatPieces
-from .quantities import quantity, refuse_mask, refuse_text, refuse_unordered, to_float
+from .quantities import quantity, refuse_mask, refuse_text, refuse_unordered, to_float, truth
 from .solvers import FINEST as FINEST_SCIPY, SCIPY_METHODS, integrate_heyoka, integrate_scipy
 from .states import within_floats
 from .swings import swing
@@ -130,6 +130,7 @@ def _motion(system: Any, theta0: Any, omega0: Any, times: Any, accuracy: Any, me
             chain.support.at(x)  # which refuses times at which the support is nowhere
     report = _reporter(progress, times)
     events = checked(events, n)
+    dense = truth(dense, "dense")
     keep = dense or bool(events)
     if digits is not None or accuracy < FLOAT_LIMIT:
         if method != "taylor":

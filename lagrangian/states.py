@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .errors import QuantityError, SceneError, printed
-from .quantities import real_number, refuse_mask, refuse_text, refuse_unordered, to_float
+from .quantities import one_array, real_number, refuse_mask, refuse_text, refuse_unordered, to_float
 
 __all__ = ["exact_states", "float_state", "float_states", "float_time", "floats", "is_plain", "shown",
            "why_no_answer", "within_floats"]
@@ -42,7 +42,7 @@ def floats(values: Any, name: str) -> Any:
     try:
         array = np.asarray(values)
     except ValueError:  # rows of unequal length
-        array = np.asarray(values, dtype=object)
+        array = one_array(values, name)
     if array.dtype.kind not in "fiu":
         array = np.array([within_floats(real_number(x, name), name) for x in array.flat]).reshape(array.shape)
     return np.asarray(array, FLOAT64, order="C")
@@ -76,7 +76,7 @@ def float_states(theta: Any, omega: Any, n: int) -> tuple[Any, Any]:
 
 def exact_states(theta: Any, omega: Any, n: int) -> tuple[Any, Any]:
     """Angles and rates as arrays of the numbers given, of the same shape (n,) or (n, chains)."""
-    theta, omega = (np.asarray(x, dtype=object) for x in (theta, omega))
+    theta, omega = one_array(theta, "theta"), one_array(omega, "omega")
     _check_same(theta, omega)
     _check_shape(theta, "theta", n)
     return theta, omega

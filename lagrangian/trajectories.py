@@ -41,7 +41,8 @@ class Trajectories:
     def __getitem__(self, j: Any) -> Any:
         """The motion of chain j, a :class:`Trajectory`; of a slice those of its chains.
 
-        Raises IndexError where there is no chain j, SceneError where a slice holds none.
+        Raises IndexError where there is no chain j, NotAQuantityError where j is no integer, SceneError where a slice
+        holds none.
         """
         if isinstance(j, slice):
             if not self.members[j]:

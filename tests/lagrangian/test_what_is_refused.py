@@ -174,10 +174,84 @@ def test_mpmath_numbers_are_exact_whatever_context_made_them():
         Support(eta=context.inf)
 
 
-def test_an_array_without_axes_is_not_a_list_of_rods():
+@pytest.mark.parametrize(("ask", "error", "words"), [
+    (lambda: CompiledChain(np.array(1.0), [1], [1], [1]), NotAQuantityError, "one mass for each rod"),
+    (lambda: Scene([rod], damping=np.array(3.0)), NotAQuantityError, r"damping is array\(3.\): give a list"),
+    (lambda: Scene([rod], springs=np.array(3)), NotAQuantityError, r"springs is array\(3\): give a list"),
+    (lambda: Scene(np.array(rod, dtype=object)), SceneError, "length of a list"),
+    (lambda: linearize(euler_lagrange(Scene([rod])), about=np.array(0.0)), NotAQuantityError, "a list of 1 angles"),
+])
+def test_an_array_without_axes_is_not_a_list(ask, error, words):
     """As a number is not."""
-    with pytest.raises(NotAQuantityError, match="one mass for each rod"):
-        CompiledChain(np.array(1.0), [1], [1], [1])
+    with pytest.raises(error, match=words):
+        ask()
+
+
+@pytest.mark.parametrize("value", [np.array([1, 0]), m > 1, None, "no"], ids=str)
+@pytest.mark.parametrize("ask", [
+    lambda value: simulate(CompiledChain([1], [1], [1], [1]), [1], [0], [0, 1], dense=value),
+    lambda value: linear().first_order(omega0, dimensionless=value),
+    lambda value: normal_modes(linear()).mathieu(omega0, dimensionless=value),
+])
+def test_yes_and_no_are_truth_values(ask, value):
+    """Arrays and relations between Symbols have none, and text always the same."""
+    with pytest.raises(NotAQuantityError, match="give True or False"):
+        ask(value)
+    assert ask(np.True_) is not None
+
+
+UNLIKE = [np.ones((2, 2)), np.ones((2, 3))]
+
+
+@pytest.mark.parametrize("values", [UNLIKE, [Matrix([1, 2]), np.ones(2)], [x * mpmath.mpf(1) for x in UNLIKE]], ids=[
+    "arrays", "a Matrix and an array", "arrays of mpmath's"])
+@pytest.mark.parametrize("ask", [
+    lambda chain, values: chain.acceleration(0, values, [0, 0]),
+    lambda chain, values: chain.acceleration(0, [0, 0], values),
+    lambda chain, values: chain.acceleration(mpmath.mpf(0), values, [0, 0]),
+    lambda chain, values: chain.energy(values, [0, 0]),
+    lambda chain, values: Ensemble(values, 1, 1, 1),
+    lambda chain, values: Ensemble([[1, 1]], 1, 1, 1, springs=values),
+    lambda chain, values: Ensemble([[1, 1]], 1, 1, 1).acceleration(mpmath.mpf(0), values, [[0, 0]]),
+    lambda chain, values: Scene([rod]).compile({m: values, l: 1, g: 1}),
+    lambda chain, values: compile_equations(euler_lagrange(Scene([Rod.bob(1, 1)] * 2, gravity=1)),
+                                            target="mpmath").acceleration(0, values, [0, 0]),
+])
+def test_arrays_that_make_no_array_together_are_refused(ask, values):
+    """And not by NumPy, which fails to put one into the other."""
+    with pytest.raises(SceneError, match="make no array together"):
+        ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]), values)
+
+
+def test_lists_of_times_of_unequal_length_are_refused():
+    """Between the times too."""
+    motion = simulate(CompiledChain([1], [1], [1], [1]), [1], [0], [0, 1], dense=True)
+
+    with pytest.raises(QuantityError, match="a list of times"):
+        motion.at([[0, 1], [0]])
+
+
+@pytest.mark.parametrize("place", [nan, 0.5, None, [0, 1]], ids=str)
+def test_a_chain_is_found_by_an_integer(place):
+    """In an ensemble and among motions; what is none is named."""
+    ensemble = Ensemble([[1], [2]], 1, 1, 1)
+    for chains in (ensemble, simulate(ensemble, [1], [0], [0, 1])):
+        with pytest.raises(NotAQuantityError, match="is no integer: give one, or a slice"):
+            chains[place]
+        with pytest.raises(IndexError, match="a number of too many digits to print is none of them"):
+            chains[10**5000]
+
+
+def test_every_rod_of_an_ensemble_has_its_four_numbers():
+    """None is for joints."""
+    with pytest.raises(NotAQuantityError, match="center is None"):
+        Ensemble([[1, 1]], 1, None, 1)
+
+
+def test_an_argument_that_a_chain_has_not_is_said_by_its_name():
+    """By that of the class which was called."""
+    with pytest.raises(TypeError, match=r"CompiledChain.__init__\(\) got an unexpected keyword argument 'g'"):
+        CompiledChain([1], [1], [1], [1], g=1)
 
 
 def test_numbers_that_sympy_cannot_tell_apart_make_a_rod():
@@ -230,6 +304,12 @@ def test_integers_that_python_does_not_print_are_refused_by_name(ask, words):
     """And not by Python's ValueError of 4300 digits, or as an infinity that nobody gave."""
     with pytest.raises(QuantityError, match=words):
         ask(CompiledChain([1, 1], [1, 1], [1, 1], [1, 1]))
+
+
+def test_an_integer_that_python_does_not_print_is_no_equilibrium():
+    """It is no multiple of pi, and SymPy cannot say so: it prints what it puts in order."""
+    with pytest.raises(NotAnEquilibriumError, match="too many digits to print"):
+        linearize(euler_lagrange(Scene([rod] * 2)), about=[BIG, 0])
 
 
 @pytest.mark.parametrize("ask", [
