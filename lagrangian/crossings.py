@@ -41,7 +41,7 @@ class Crossing:
     direction : 0 for both ways, 1 for growing angles, -1 for shrinking ones
 
     A motion that starts on the value crosses it then, as far as floats know, with the direction that follows; one that
-    ends there has not crossed it.
+    ends there, or rests there, has not crossed it.
 
     Raises QuantityError where one of them is none of these, TextError where the angle is text.
 

@@ -5,6 +5,9 @@ errors do not compound as if they were always at their worst.  Within a step the
 where that is more than there are, the motion begins again with more of them.  Orders and steps are chosen as in
 float64: ``p = 1 + 1.16 digits`` balances the work of a step, O(n p**2), against its length.
 
+A start at ``pi`` is a start at ``pi``, an unstable equilibrium say, with any number of digits: angles that are whole
+multiples of it are held as that multiple and 0, and only what they move by is rounded.
+
 Motions with digits in several threads wait for each other (:mod:`lagrangian.precision`).
 """
 
@@ -17,7 +20,7 @@ from typing import Any, NamedTuple
 
 import flint
 import numpy as np
-from sympy import Integer
+from sympy import Integer, pi
 
 from .arithmetic import Balls
 from .chain import CompiledChain
@@ -29,8 +32,8 @@ from .precision import working
 from .stepper import FARTHEST
 from .taylor import FACTORS, expand, factor, series_shape
 
-__all__ = ["DigitRun", "Piece", "Steps", "best_order", "bits_for", "integrate_digits", "magnitude", "middle",
-           "numbers", "whole_turns"]
+__all__ = ["DigitRun", "Piece", "Steps", "apart_by_then", "best_order", "bits_for", "integrate_digits", "magnitude",
+           "middle", "numbers", "whole_turns"]
 
 GUARD = 30  # bits beyond those asked for
 MORE = 128  # if they are too few, and then twice as many, up to 4096, or 16 for every rod and more
@@ -65,7 +68,10 @@ def bits_for(digits: int) -> int:
 
 @dataclass(frozen=True)
 class Piece:
-    """One step: its start and length, s, and every angle as a python-flint polynomial of the time since its start."""
+    """One step: its start and length, s, and every angle as a python-flint polynomial of the time since its start.
+
+    Angles are without the half turns that they have had from the first, see :class:`DigitRun`.
+    """
 
     start: Any
     length: Any
@@ -82,10 +88,20 @@ def _read(numbers: Any) -> Piece:
     return Piece(start, length, tuple(map(flint.arb_poly, angles)))
 
 
+class Place(NamedTuple):
+    """The angles, less the half turns of :class:`DigitRun`, at a time, in balls; whether that one was asked for."""
+
+    time: Any
+    theta: Any
+    asked: bool
+
+
 class DigitRun(NamedTuple):
     """Angles with turns, angles within one turn and rates, mpmath numbers, and whole turns, Python's integers; steps.
 
-    The arrays have shape (times, n); ``steps`` is how many were made, ``pieces`` are they, where kept.
+    The arrays have shape (times, n); ``steps`` is how many were made, ``pieces`` are they, where kept.  ``halves`` are
+    the half turns of every rod at the start where they are all of its angle, else 0.  ``path`` is the motion at every
+    step and every time, in order.
     """
 
     theta: Any
@@ -94,6 +110,8 @@ class DigitRun(NamedTuple):
     omega: Any
     steps: int
     pieces: list[Piece] | None
+    halves: list[int]
+    path: list[Place]
 
 
 def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None = None,
@@ -105,35 +123,68 @@ def integrate_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, d
     step.  Truncation is below ``10**-digits`` a step, and in balls rounding too.  Raises DriveError where the support's
     motion has no Taylor series, QuantityError where a step shrinks to nothing.
     """
+    bits, motion, found = _followed(chain, theta, omega, times, digits, order, progress, steps, keep)
+    context = Context(digits)
+    with working(bits):
+        angles, rates = (np.array([state[part] for state in found], dtype=object) for part in (0, 1))
+        angles = angles + np.array(motion.halves) * flint.arb.pi()
+        turns = np.frompyfunc(whole_turns, 1, 1)(angles)
+        within = angles - turns * (2 * flint.arb.pi())
+        theta, within, omega = (numbers(x, context) for x in (angles, within, rates))
+    return DigitRun(theta, within, turns, omega, motion.count, motion.pieces, motion.halves, motion.path)
+
+
+def apart_by_then(run: DigitRun, chain: CompiledChain, theta: Any, omega: Any, digits: int, order: int | None = None,
+                  steps: Callable[..., Steps] | None = None) -> Any:
+    """The largest difference of any angle from that of another run, up to each of the times; float64, (times,); rad.
+
+    The runs are compared at every step of the first: a rod that has fallen, and turned, comes back to where it was.
+    """
+    when = [place.time for place in run.path]
+    found = _followed(chain, theta, omega, when, digits, order, None, steps, False)[2]
+    apart = [max(float(abs(x - y)) for x, y in zip(place.theta, there)) for place, (there, _) in zip(run.path, found)]
+    return np.maximum.accumulate(apart)[[place.asked for place in run.path]]
+
+
+def _followed(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None,
+              progress: Callable[[float], None] | None, steps: Callable[..., Steps] | None,
+              keep: bool) -> tuple[int, Steps, list[Any]]:
+    """The bits that were enough, the steps, and the states in balls at ``times``, SymPy numbers or balls."""
     with working(64):
-        bits = bits_for(digits) + max(magnitude(Balls().number(x)) for x in (*theta, *times))
+        bits = bits_for(digits) + max(magnitude(Balls().coerced(x)) for x in (*theta, *times))
     for more in (0, *(MORE << k for k in range(6 + (len(chain) // 256).bit_length()))):
         try:
-            return _integrated(bits + more, chain, theta, omega, times, digits, order, progress, steps, keep)
+            return bits + more, *_with_bits(bits + more, chain, theta, omega, times, digits, order, progress, steps,
+                                            keep)
         except TooFewBits as refused:
             reached = refused.start
     raise QuantityError(f"the motion cannot be followed beyond t = {reached:.6g}: with {bits + more} bits theta'' "
                         f"has fewer digits than asked for.  End before it, or give masses to rods without.")
 
 
-def _integrated(bits: int, chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None,
-                progress: Callable[[float], None] | None, steps: Callable[..., Steps] | None, keep: bool) -> DigitRun:
-    context = Context(digits)
+def _with_bits(bits: int, chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, order: int | None,
+               progress: Callable[[float], None] | None, steps: Callable[..., Steps] | None,
+               keep: bool) -> tuple[Steps, list[Any]]:
     with working(bits):
-        state = [[Balls().number(x).mid() for x in part] for part in (theta, omega)]
+        halves = [half_turns(x) for x in theta]
+        rest = [Integer(0) if half else x for x, half in zip(theta, halves)]
+        state = [[Balls().number(x).mid() for x in part] for part in (rest, omega)]
         motion = (steps or Steps)(chain, state, digits, order)
-        motion.pieces = [] if keep else None
-        marks = [Balls().number(x).mid() for x in times]
+        motion.halves, motion.pieces = halves, [] if keep else None
+        marks = [Balls().coerced(x).mid() for x in times]
         found = []
         for mark in marks:
             found.append(motion.state_at(mark, marks[-1]))
+            motion.path.append(Place(mark, found[-1][0], True))
             if progress is not None:
                 progress(float(mark))
-        angles, rates = (np.array([state[part] for state in found], dtype=object) for part in (0, 1))
-        turns = np.frompyfunc(whole_turns, 1, 1)(angles)
-        within = angles - turns * (2 * flint.arb.pi())
-        theta, within, omega = (numbers(x, context) for x in (angles, within, rates))
-        return DigitRun(theta, within, turns, omega, motion.count, motion.pieces)
+        return motion, found
+
+
+def half_turns(angle: Any) -> int:
+    """The half turns that an exact angle is; 0 where it is no whole number of them."""
+    halves = angle / pi
+    return int(halves) if halves.is_Integer else 0
 
 
 def magnitude(x: Any) -> int:
@@ -169,6 +220,8 @@ class Steps:
         self.joints = chain.joints_in(self.arithmetic)
         self.theta, self.omega = (self.arithmetic.array(part) for part in state)
         self.gravity = self.arithmetic.number(chain.gravity)
+        self.halves = [0] * len(chain)  # half turns, which the angles have beyond theta
+        self.path: list[Place] = []
         self.pieces: list[Piece] | None = None  # where every step is added, if it shall be kept
         self.pace = Pace()
         self.pull: Any = None
@@ -242,11 +295,16 @@ class Steps:
         delta[1:] = delta[1:] - self.theta[:-1]
         for k in range(n):
             s[k], c[k] = self.arithmetic.sines(delta[k])
+            bend = self.halves[k] - self.halves[k - 1] if k else self.halves[0]
+            if bend:
+                s[k], c[k] = (-1) ** (bend % 2) * s[k], (-1) ** (bend % 2) * c[k]
+                delta[k] = delta[k] + bend * flint.arb.pi()
         if self.pull is None or not self.chain.support.steady:
             self.pull = self.pulled()
         self.series = self.expanded(s, c, delta)
         self.length = self._length(end)
         self.count += 1
+        self.path.append(Place(self.start, self.theta, False))
         if self.pieces is not None:
             self.pieces.append(self.piece())
 

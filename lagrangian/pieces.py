@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import flint
 import numpy as np
 from sympy import pi
 
@@ -180,12 +181,14 @@ def _horner(coefficients: Any, h: Any) -> Any:
 class BallPieces(Pieces):
     """The steps of :func:`lagrangian.digits.integrate_digits` to ``times``; results are numbers of ``context``.
 
-    The floats next to the first and the last of the times, which are exact, count as within the span.
+    The floats next to the first and the last of the times, which are exact, count as within the span.  Every rod has
+    ``halves`` half turns beyond its polynomials.
     """
 
-    def __init__(self, pieces: Sequence[Piece], context: Any, times: Sequence[Any]) -> None:
+    def __init__(self, pieces: Sequence[Piece], context: Any, times: Sequence[Any], halves: Sequence[int]) -> None:
         large = max(magnitude(x) for p in pieces for x in (p.start, *(angle[0] for angle in p.angles)))
-        self.context, self.bits = context, bits_for(context.dps) + large
+        large += max(abs(half).bit_length() for half in halves)
+        self.context, self.bits, self.halves = context, bits_for(context.dps) + large, halves
         with working(self.bits):
             ends = self.given([x for end in (times[0], times[-1]) for x in (end, float(end))])
         self.times, self.span = [times[0], times[-1]], (ends.min(), ends.max())
@@ -194,7 +197,8 @@ class BallPieces(Pieces):
         self.angles = [p.angles for p in pieces]
 
     def __reduce__(self) -> Any:
-        return BallPieces, (list(map(Piece, self.start, self.length, self.angles)), self.context, self.times)
+        pieces = list(map(Piece, self.start, self.length, self.angles))
+        return BallPieces, (pieces, self.context, self.times, self.halves)
 
     def given(self, t: Any) -> Any:
         return self.plain(Balls().array(Balls().number(x) for x in _exact(t)))
@@ -207,15 +211,16 @@ class BallPieces(Pieces):
 
     def states(self, steps: Any, h: Any) -> tuple[Any, Any]:
         shape = len(h), len(self.angles[0])
-        theta = [angle(x) for step, x in zip(steps, h) for angle in self.angles[step]]
+        more = [half * flint.arb.pi() for half in self.halves]
+        theta = [angle(x) + half for step, x in zip(steps, h) for angle, half in zip(self.angles[step], more)]
         omega = [angle.derivative()(x) for step, x in zip(steps, h) for angle in self.angles[step]]
         return self.shown(theta).reshape(shape), self.shown(omega).reshape(shape)
 
     def goal(self, angle: Any, turn: int) -> Any:
-        return Balls().number(angle + 2 * pi * turn).mid()
+        return {half: Balls().number(angle + (2 * turn - half) * pi).mid() for half in set(self.halves)}
 
     def beyond(self, step: int, rod: int, goal: Any, h: Any) -> Any:
-        return middle(np.frompyfunc(self.angles[step][rod], 1, 1)(h) - goal)
+        return middle(np.frompyfunc(self.angles[step][rod], 1, 1)(h) - goal[self.halves[rod]])
 
     def whole_turns(self, angle: Any) -> int:
         return whole_turns(angle)

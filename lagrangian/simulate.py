@@ -25,7 +25,7 @@ from .angles import TURN
 from .chain import CompiledChain
 from .compiled import CompiledEquations, compile_equations
 from .crossings import Crossing, checked, find_crossings
-from .digits import DigitRun, best_order, integrate_digits
+from .digits import DigitRun, apart_by_then, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
 from .ensemble import Ensemble
 from .equations import EquationsOfMotion
@@ -237,16 +237,14 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, given
     exact = [[quantity(x, "state") for x in part] for part in (theta, omega)]
     exact_times = [quantity(x, "times") for x in given_times]
     while True:
-        kind, run, finer = _twice(chain, exact[0], exact[1], exact_times, used, dense or bool(events), report)
-        context = run.angle.flat[0].context
-        turned = (run.turns - finer.turns) * (2 * context.pi)
-        apart = abs(run.angle - np.frompyfunc(context.convert, 1, 1)(finer.angle) + turned)
-        error = SAFETY * np.maximum.accumulate(apart.max(axis=1).astype(float)) + max(10.0**-used, TINY)
+        kind, run, apart = _twice(chain, exact[0], exact[1], exact_times, used, dense or bool(events), report)
+        error = SAFETY * apart + max(10.0**-used, TINY)
         if digits is not None or error[-1] <= accuracy:
             break
         used += 2 + ceil(log10(error[-1] / accuracy))
     energy = chain.energy_of(run.angle.astype(float).T, run.omega.astype(float).T, run.turns.T)
-    motion = BallPieces(run.pieces, context, exact_times) if run.pieces is not None else None
+    context = run.angle.flat[0].context
+    motion = BallPieces(run.pieces, context, exact_times, run.halves) if run.pieces is not None else None
     found = find_crossings(motion, events, exact_times[-1]) if motion is not None else {}
     return Trajectory(times, run.theta, run.omega, _whole(run.turns), run.angle, energy, error, accuracy,
                       f"taylor, {used} digits in {kind}", run.steps, best_order(used), chain, found,
@@ -254,17 +252,21 @@ def _with_digits(chain: CompiledChain, theta: Any, omega: Any, times: Any, given
 
 
 def _twice(chain: CompiledChain, theta: Any, omega: Any, times: Any, digits: int, keep: bool,
-           report: Callable[[float], None] | None) -> tuple[str, DigitRun, DigitRun]:
-    """The numbers used, the motion, and a finer one: with other rounding of the data, or with eight digits more."""
-    run = partial(integrate_digits, chain, theta, omega, times)
+           report: Callable[[float], None] | None) -> tuple[str, DigitRun, Any]:
+    """The numbers used, the motion, and its differences from a finer one.
+
+    That one has other rounding of the data, or eight digits more.
+    """
+    first = partial(integrate_digits, chain, theta, omega, times, digits, None, report)
     if has_doubled(digits):
-        finer = partial(DoubledSteps, unsettled=UNIT)
         try:
-            return ("double-double", run(digits, None, report, DoubledSteps, keep),
-                    run(digits + 3, best_order(digits) + 4, None, finer))
+            run = first(DoubledSteps, keep)
+            return "double-double", run, apart_by_then(run, chain, theta, omega, digits + 3, best_order(digits) + 4,
+                                                       partial(DoubledSteps, unsettled=UNIT))
         except OutOfRange:
             pass
-    return "balls", run(digits, None, report, None, keep), run(digits + 8)
+    run = first(None, keep)
+    return "balls", run, apart_by_then(run, chain, theta, omega, digits + 8)
 
 
 # -- what is given --------------------------------------------------------------------------------------------

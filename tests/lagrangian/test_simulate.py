@@ -554,6 +554,40 @@ def test_angles_of_a_million_lose_what_their_float_does_not_hold_and_no_more():
     assert abs(far.wrapped - near.wrapped).max() < 1e-13
 
 
+@pytest.mark.parametrize("digits", [None, 20, 30, 35], ids=["float64", "pairs", "more pairs", "balls"])
+@pytest.mark.parametrize("halves", [[1], [-3], [1, 0], [1, 2, -1]], ids=str)
+def test_whole_half_turns_are_exact_so_that_an_equilibrium_is_never_left(halves, digits):
+    """Rods at rest upon each other, upwards and downwards; from 1e-30 rad they would fall in 25 s."""
+    n = len(halves)
+    chain = CompiledChain([1.0, 2.0, 1.0][:n], [1.0, 0.7, 0.1][:n], [0.5, 0.3, 0.1][:n], [0.6, 0.4, 0.1][:n],
+                          upright=False)
+    motion = simulate(chain, [half * pi for half in halves], [0] * n, [0, 40, 50], digits=digits, events=flips(chain))
+
+    assert not motion.omega.any() and motion.accurate and not any(map(len, motion.events.values()))
+    with mpmath.workdps(digits or 15):
+        unit = mpmath.mpf(10) ** -(digits or 15)
+        assert all(abs(x - half * mpmath.pi) < 10 * unit for row in motion.theta for x, half in zip(row, halves))
+
+
+@pytest.mark.parametrize("end", [25, 28, 31, 34])
+@pytest.mark.parametrize("digits", [None, 20, 30])
+def test_an_equilibrium_that_is_no_number_of_half_turns_is_left_by_rounding_and_the_estimate_says_so(end, digits):
+    """A rod against a sideways pull falls, turns, and is back near its place, where nothing is seen of that."""
+    chain = CompiledChain([1], [1], [0.5], [0.6], gravity=0, support_acceleration=(-9.81, 0))
+    motion = simulate(chain, [-pi / 2], [0], [0, end], digits=digits)
+
+    assert abs(float(motion.theta[-1, 0]) + math.pi / 2) <= motion.error[-1]
+
+
+@pytest.mark.parametrize("digits", [20, 35], ids=["pairs", "balls"])
+def test_springs_know_of_half_turns(digits):
+    """Joints bent by half a turn and more, all of it taken out before rounding, bend as they do in float64."""
+    chain = CompiledChain([1, 2], [1, 1], [0.5, 0.3], [0.6, 0.4], springs=[2, 3], upright=False)
+    rough, fine = (simulate(chain, [pi, 4 * pi], [0.1, 0], [0, 0.5, 1], digits=given) for given in (None, digits))
+
+    assert (abs(rough.theta - fine.theta.astype(float)).max(axis=1) <= rough.error).all() and rough.error[-1] < 1e-10
+
+
 def test_progress_is_reported_in_order():
     """progress may be a function of the time reached."""
     seen = []
