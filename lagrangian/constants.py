@@ -11,6 +11,8 @@ centre of percussion is near its end, loses no digits here.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -32,8 +34,10 @@ from .quantities import (
     to_float,
 )
 
-__all__ = ["LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
-           "joint_constants", "one_by_one", "rod_row", "substitution", "to_floats"]
+__all__ = ["EPSILON", "LIGHT", "NAMES", "check_damping", "check_joints", "checked", "column", "even", "float_row",
+           "joint_constants", "one_by_one", "rod_row", "signs", "substitution", "to_floats", "unsettled"]
+
+EPSILON = float(np.finfo(float).eps)
 
 NAMES = ("mass", "length", "center", "gyration")
 LIGHT = 1e-90  # of the largest mass: stands for no mass, also where rods fold back to 1e-16 and masses are 1e12 apart
@@ -61,6 +65,26 @@ def float_row(m: Any, l: Any, H: Any, R: Any) -> tuple[Any, ...]:
 def even(m: Any, l: Any, I: Any) -> bool:
     """Whether masses, and lengths, are within a factor 4 of each other, and no rod is a tenth as wide as long."""
     return bool(m.max() <= 4 * m.min() and l.max() <= 4 * l.min() and (m * l * l <= 100 * I).all())
+
+
+@lru_cache(64)
+def signs(shape: tuple[int, ...]) -> Any:
+    """1 and -1 by the Thue-Morse sequence, so that ``I`` and ``m H`` of every rod differ, and those of its neighbours.
+
+    A single rod knows nothing of its constants but ``m H/I``.
+    """
+    found, size = np.ones(1), prod(shape)
+    while found.size < size:
+        found = np.concatenate([found, -found])
+    return locked(found[:size].reshape(shape))
+
+
+def unsettled(values: Any, sign: int) -> Any:
+    """Floats moved by a unit in the last place or two, up and down by :func:`signs`, or by their negatives; any shape.
+
+    Sign 0 leaves them.
+    """
+    return values * (1.0 + sign * EPSILON * signs(values.shape)) if sign else values
 
 
 def to_floats(values: Any) -> Any:

@@ -22,6 +22,7 @@ import flint
 import numpy as np
 
 from .chain import CompiledChain
+from .constants import signs
 from .digits import Steps
 from .machine import has_numba
 from .pairs import to_pairs
@@ -58,20 +59,21 @@ def to_balls(pairs: Any) -> Any:
 class DoubledSteps(Steps):
     """:class:`lagrangian.digits.Steps` with series in pairs.
 
-    ``unsettled`` moves every constant of the rods by that part of itself, up and down in turn.
+    ``unsettled`` moves every constant, and the weight, by that part of itself, up and down as
+    :func:`lagrangian.constants.signs` says.
     """
 
     def __init__(self, chain: CompiledChain, state: list[Any], digits: int, order: int | None,
                  unsettled: float = 0.0) -> None:
         super().__init__(chain, state, digits, order)
         n = len(chain)
-        self.rods, *self.joints = (None if part is None else _constants(part) for part in (self.rods, *self.joints))
-        signs = np.where(np.arange(self.rods.size) // 3 % 2 == 0, unsettled, -unsettled).reshape(self.rods.shape)
-        self.rods += 1j * (self.rods.real * signs)
+        self.unsettled = unsettled
+        self.rods, *self.joints = (None if part is None else _moved(_constants(part), unsettled)
+                                   for part in (self.rods, *self.joints))
         self.work = [np.zeros(shape, complex) for shape in ((n, FACTORS), (n, 6), series_shape(n, self.order))]
 
     def pulled(self) -> tuple[Any, Any]:
-        ax, ay = to_pairs(super().pulled())
+        ax, ay = _moved(to_pairs(super().pulled()), -self.unsettled)
         return ax, ay
 
     def expanded(self, s: Any, c: Any, delta: Any) -> Any:
@@ -98,6 +100,10 @@ class DoubledSteps(Steps):
 
     def rates(self) -> Any:
         return to_balls(super().rates())
+
+
+def _moved(pairs: Any, part: float) -> Any:
+    return pairs + 1j * (pairs.real * (part * signs(pairs.shape)))
 
 
 def _constants(numbers: Any) -> Any:

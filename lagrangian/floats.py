@@ -16,10 +16,12 @@ from sympy import Rational, floor, pi
 
 from .angles import TURN, TURN_LOW, product
 from .chain import CompiledChain
+from .constants import EPSILON, unsettled
 from .errors import QuantityError
+from .frozen import locked
 from .machine import machine
 from .pace import Pace
-from .quantities import high_low, quantity, to_float
+from .quantities import high_low, quantity
 from .states import within_floats
 from .stepper import DONE, STUCK, advance, room, total
 
@@ -82,15 +84,15 @@ def wrapped(angle: Any, turns: Any) -> tuple[Any, Any]:
 
 
 def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, order: int, tolerance: float,
-                     rods: Any = None, keep: bool = False, progress: Callable[[float], None] | None = None) -> FloatRun:
+                     moved: int = 0, keep: bool = False, progress: Callable[[float], None] | None = None) -> FloatRun:
     """The motion at ``times``, monotone, from the state at the first of them.
 
-    ``theta``, ``omega`` and ``times`` as :func:`split` takes them; ``rods`` replaces the chain's constants; ``keep``
-    keeps every step's series.  Raises DriveError where the support has no Taylor series, QuantityError where steps
-    shrink to nothing.
+    ``theta``, ``omega`` and ``times`` as :func:`split` takes them; ``moved``, 1 or -1, moves whatever has been rounded,
+    constants, weight and waves, this way or that; ``keep`` keeps every step's series.  Raises DriveError where the
+    support has no Taylor series, QuantityError where steps shrink to nothing.
     """
-    n, moved = len(chain), rods is not None
-    rods = rods if moved else chain.rods.copy()  # machine code would be translated again for what is read only
+    n, rods = len(chain), unsettled(chain.rods.copy(), moved)  # what is read only would be translated again
+    damping, springs = (None if x is None else locked(unsettled(x, moved)) for x in (chain.damping, chain.springs))
     marks = np.ascontiguousarray(split(times, False)[:2].T)
     state, clock = np.zeros((5, n)), marks[0].copy()
     state[:3], state[3:] = split(theta, True), split(omega, False)[:2]
@@ -104,7 +106,7 @@ def integrate_floats(chain: CompiledChain, theta: Any, omega: Any, times: Any, o
         if keep:
             record = np.empty((most, 2 + n * (order + 4)))
         outcome, made, found = machine(advance)(
-            rods, chain.damping, chain.springs, pull, waves, tolerance, state,
+            rods, damping, springs, pull, waves, tolerance, state,
             clock, marks, found, out, most, record, space)
         steps += made
         if keep:
@@ -135,21 +137,25 @@ def _reason(chain: CompiledChain) -> str:
     return "Numbers beyond the range of floats need digits, such as simulate(..., digits=20)."
 
 
-def _shaking(chain: CompiledChain, clock: Any, order: int, moved: bool) -> tuple[Any, Any]:
+def _shaking(chain: CompiledChain, clock: Any, order: int, moved: int) -> tuple[Any, Any]:
     """The series about now of the acceleration of the first joint, shape (2, order), and its waves or None.
 
     Where there are waves its steady part is one of them, of frequency 0, and the series is left to them.  A function
-    of time is given a float, whose rounding it may amplify; ``moved``: by one unit in its last place.
+    of time is given a float, whose rounding it may amplify, and what it gives is exact unless an expression stands for
+    it.  ``moved`` moves all that is rounded: the sum of weight and support, and what that is the sum of.
     """
     up, pull = chain.up, np.zeros((2, order))
     if chain.support.function is not None:
-        now = float(clock[0] + clock[1]) * (1.0 + moved * np.finfo(float).eps)
+        now = float(clock[0] + clock[1]) * (1.0 + moved * EPSILON)
         pull[:] = np.array(chain.support.series(now, order, None), dtype=float)[:, :order]
-        pull[1, 0] += to_float(chain.gravity)
+        if chain.support.is_exact:
+            pull = unsettled(pull, moved)
+        pull[1, 0] = chain.add_weight(pull[1, 0])
         pull[1] *= up
-        return pull, None
-    pull[:, 0], waves = chain.steady_pull, chain.support.floats[1]
+        return unsettled(pull, -moved), None
+    pull[:, 0], waves = unsettled(np.array(chain.steady_pull), -moved), chain.support.floats[1]
     if not len(waves):
         return pull, None
     waves = waves * np.array([1.0, 1.0, 1.0, 1.0, 1.0, up, up])
+    waves[:, [0, 3, 4, 5, 6]] = unsettled(waves[:, [0, 3, 4, 5, 6]], -moved)  # the first against the weight
     return pull, np.concatenate([[[0.0, 0.0, 0.0, pull[0, 0], 0.0, pull[1, 0], 0.0]], waves])

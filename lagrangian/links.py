@@ -13,11 +13,12 @@ from .arithmetic import Arithmetic
 from .constants import LIGHT, NAMES, check_joints, checked, column, float_row, joint_constants, rod_row, to_floats
 from .errors import NotAQuantityError, SceneError
 from .frozen import Frozen, locked
-from .quantities import quantity, real_number, to_float
+from .quantities import high_low, quantity, real_number, to_float
 from .redone import FINE, constants_in_pairs
-from .shaking import Shaking, shaking_of
+from .shaking import LEFT, Shaking, shaking_of
 from .single import MODELS
 from .states import float_states
+from .stepper import total
 
 __all__ = ["Links"]
 
@@ -148,15 +149,39 @@ class Links(Frozen):
 
     def pull(self, t: Any, arithmetic: Arithmetic | None = None) -> tuple[Any, Any]:
         """``(xi'', +-(g + eta''))``, the acceleration that the first joint seems to have; m/s**2."""
+        if self.support.function is None:
+            ax, ay = self.weighted.at(t, arithmetic)
+            return ax, self.up * ay
         ax, ay = self.support.at(t, arithmetic)
-        g = arithmetic.number(self.gravity) if arithmetic else to_float(self.gravity)
-        return ax, self.up * (g + ay)
+        if arithmetic:
+            return ax, self.up * (arithmetic.number(self.gravity) + ay)
+        g, size = self.add_weight(0.0), abs(float(ay))
+        ay = self.add_weight(float(ay))
+        if self.support.is_exact and LEFT * (abs(ax) + abs(ay)) < abs(g) + size:  # and little is left of them
+            ax, ay = self.pull(FINE.coerced(t), FINE)
+            return float(ax), float(ay)
+        return ax, self.up * ay
+
+    def add_weight(self, ay: float) -> float:
+        """``g + ay`` rounded once, for the float ``ay``; m/s**2."""
+        high, low = self._gravity_pair
+        found, rest = total(high, ay)
+        return float(found + (rest + low))
+
+    @cached_property
+    def _gravity_pair(self) -> tuple[float, float]:
+        return high_low(self.gravity)
+
+    @cached_property
+    def weighted(self) -> Shaking:
+        """The support's acceleration with g added to its constant part exactly; of no use for functions of time."""
+        return self.support.under(self.gravity)
 
     @cached_property
     def steady_pull(self) -> tuple[float, float]:
-        """The constant part of :meth:`pull` in float64, which weights are counted with; m/s**2."""
-        ax, ay = self.support.floats[0].tolist()
-        return ax, self.up * (to_float(self.gravity) + ay)
+        """The constant part of :meth:`pull` in float64, rounded once, which weights are counted with; m/s**2."""
+        ax, ay = self.weighted.floats[0].tolist()
+        return ax, self.up * ay
 
     @cached_property
     def _joint_floats(self) -> tuple[Any, Any]:
@@ -166,7 +191,7 @@ class Links(Frozen):
         """:meth:`pull` in numbers of FINE, or in floats where the support moves by a function of them."""
         if self._steady:
             return self._steady_fine
-        return self.pull(t) if self.support.function is not None else self.pull(FINE.coerced(t), FINE)
+        return self.pull(FINE.coerced(t), FINE) if self.support.is_exact else self.pull(t)
 
     @cached_property
     def _steady_fine(self) -> Any:

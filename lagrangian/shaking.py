@@ -13,7 +13,7 @@ numpy's sin, cos, tan, exp, log, sqrt, sinh, cosh, tanh.  A function that cannot
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from inspect import signature
 from math import isfinite, nan
@@ -21,12 +21,13 @@ from numbers import Complex, Real
 from typing import Any, TypeVar
 
 import flint
+import mpmath
 import numpy as np
 from sympy import Integer, cosh, pi, sinh, tanh
 from sympy.core.function import AppliedUndef
 
 from .angles import revolved
-from .arithmetic import Arithmetic
+from .arithmetic import Arithmetic, MPNumbers
 from .errors import DriveError, QuantityError
 from .frozen import locked
 from .jets import FUNCTIONS, Jet, evaluate
@@ -36,7 +37,17 @@ from .waves import NoWave, waves_of
 __all__ = ["Shaking", "shaking_of", "shaking_of_expressions"]
 
 Answer = TypeVar("Answer")
+LEFT = 8.0  # of which one part is left: three bits lost are within what accelerations may lose
 NUMPYS = [name for name in FUNCTIONS if hasattr(np, name)]
+
+
+def _fine() -> MPNumbers:
+    context = mpmath.mp.clone()
+    context.dps = 60
+    return MPNumbers(context)
+
+
+FINE = _fine()  # for sums of which next to nothing is left
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +68,16 @@ class Shaking:
     function: Callable[..., Any] | None = None
     motion: Callable[..., Any] | None = None
     name: str = "support_acceleration"
+
+    def under(self, gravity: Any) -> Shaking:
+        """The same with g, an exact number, added to the constant part of ``eta''``, before anything rounds."""
+        ax, ay = self.constant
+        return replace(self, constant=(ax, ay + gravity))
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether it is known to any number of digits, as a function of time that gives floats is not."""
+        return self.function is None or isinstance(self.function, _Expressions)
 
     @property
     def at_rest(self) -> bool:
@@ -87,19 +108,33 @@ class Shaking:
                 return self._value(t, number)
             return self._answered(lambda: self._value(t, number), "in numbers of more digits", "give floats")
         if arithmetic is None:
-            (ax, ay), waves = self.floats
-            if not isfinite(t):
-                return nan, nan
-            for _, turns, low, cx, sx, cy, sy in waves.tolist():
-                s, c = revolved(turns, low, float(t), 0.0)
-                ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)
+            return self._in_floats(float(t)) if isfinite(t) else (nan, nan)
+        return _at(t, self._numbers(number), arithmetic)
+
+    def _in_floats(self, t: float) -> tuple[float, float]:
+        """The pair, from more digits where next to nothing is left of its parts, weight and waves."""
+        (ax, ay), waves = self._lists
+        size = abs(ax) + abs(ay)
+        for _, turns, low, cx, sx, cy, sy in waves:
+            s, c = revolved(turns, low, t, 0.0)
+            x, p, y, q = cx * c, sx * s, cy * c, sy * s
+            ax, ay, size = ax + (x + p), ay + (y + q), size + abs(x) + abs(p) + abs(y) + abs(q)
+        if LEFT * (abs(ax) + abs(ay)) >= size:
             return ax, ay
-        ax, ay = (number(x) for x in self.constant)
-        for wave in self.waves:
-            q, cx, sx, cy, sy = (number(x) for x in wave)
-            s, c = arithmetic.sines(q * t)
-            ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)
-        return ax, ay
+        ax, ay = _at(FINE.context.mpf(t), self._fine, FINE)
+        return float(ax), float(ay)
+
+    @cached_property
+    def _lists(self) -> Any:
+        return [part.tolist() for part in self.floats]
+
+    @cached_property
+    def _fine(self) -> Any:
+        return self._numbers(FINE.number)
+
+    def _numbers(self, number: Any) -> Any:
+        """``constant`` and ``waves`` in an arithmetic."""
+        return [number(x) for x in self.constant], [[number(x) for x in wave] for wave in self.waves]
 
     def series(self, t: Any, order: int, arithmetic: Arithmetic | None = None) -> tuple[list[Any], list[Any]]:
         """Taylor coefficients 0, ..., order about ``t`` of both components.  Raises DriveError where there are none."""
@@ -174,6 +209,14 @@ class Shaking:
                 ratio = q / (j + 1)
                 a, b, d, e = b * ratio, -a * ratio, e * ratio, -d * ratio
         return x, y
+
+
+def _at(t: Any, numbers: Any, arithmetic: Arithmetic) -> tuple[Any, Any]:
+    (ax, ay), waves = numbers
+    for q, cx, sx, cy, sy in waves:
+        s, c = arithmetic.sines(q * t)
+        ax, ay = ax + (cx * c + sx * s), ay + (cy * c + sy * s)
+    return ax, ay
 
 
 def _first(x: Any) -> Any:

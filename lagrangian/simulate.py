@@ -1,18 +1,18 @@
 r"""The motion of a chain to the accuracy asked, with an estimate of what was reached.
 
 Every motion is computed three times: as asked, and twice to three more digits, with a higher order and with the
-constants of the rods moved by one unit in the last place, this way and that, so that the differences show truncation,
-rounding and the rounding of the data, as the motion itself amplifies them.  The estimate is six times the largest
-difference so far; two of them are seldom both small by chance.  Where it exceeds the accuracy asked for, steps are
-made finer, down to the rounding of float64; what chaos then still takes is reported, never hidden: from 2 rad, 10 s,
-two bobs keep 12 digits, ten keep 2, and ten uniform rods none.
+constants of rods and joints, weight and waves moved by a unit in the last place or two, this way and that, so that the
+differences show truncation, rounding and the rounding of the data, as the motion itself amplifies them.  The estimate
+is six times the largest difference so far, between the times asked for too; two of them are seldom both small by
+chance.  Where it exceeds the accuracy asked for, steps are made finer, down to the rounding of float64; what chaos then
+still takes is reported, never hidden: from 2 rad, 10 s, two bobs keep 12 digits, ten keep 2, and ten uniform rods none.
 """
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from math import ceil, inf, log10, nan
 from numbers import Integral
@@ -24,6 +24,7 @@ from sympy import floor, log
 from .angles import TURN
 from .chain import CompiledChain
 from .compiled import CompiledEquations, compile_equations
+from .constants import EPSILON, unsettled
 from .crossings import Crossing, checked, find_crossings
 from .digits import DigitRun, apart_by_then, best_order, integrate_digits
 from .doubled import UNIT, DoubledSteps, OutOfRange, has_doubled
@@ -45,6 +46,7 @@ METHODS = ("taylor", *SCIPY_METHODS, "heyoka", "linear")
 SAFETY = 6.0
 TINY = float(np.finfo(float).tiny)  # beyond so many digits the error, a float, is stated as this
 MOST_DIGITS = 100_000
+MOST_BETWEEN = 100_000  # angles that are compared between the times asked for
 FLOAT_LIMIT = 1e-14  # accuracies below it need more digits than float64 has
 
 
@@ -157,14 +159,15 @@ def _motion(system: Any, theta0: Any, omega0: Any, times: Any, accuracy: Any, me
 
 def _to_accuracy(chain: CompiledChain, theta: Any, omega: Any, times: Any, accuracy: float, keep: bool,
                  report: Callable[[float], None] | None) -> tuple[FloatRun, Any]:
-    tolerance = max(FINEST, accuracy * 1e-3)
+    tolerance, times = max(FINEST, accuracy * 1e-3), split(times, False)
     while True:
         order = min(ORDER, best_order(-log10(tolerance)))
-        run = integrate_floats(chain, theta, omega, times, order, tolerance, None, keep, report)
-        error = 0.0
+        run = integrate_floats(chain, theta, omega, times, order, tolerance, 0, keep, report)
+        every, at = _filled(times, min(run.steps, MOST_BETWEEN // len(chain)))
+        others: list[FloatRun] = []
         for sign in (1, -1):
-            other = integrate_floats(chain, theta, omega, times, order + 4, tolerance / 1000, _moved(chain.rods, sign))
-            error = np.maximum(error, _estimate(run, other))
+            others.append(integrate_floats(chain, theta, omega, every, order + 4, tolerance / 1000, sign))
+            error = _estimate(run, others, at)
             if error[-1] > accuracy and tolerance > FINEST:
                 break
         else:
@@ -177,16 +180,28 @@ def _whole(turns: Any) -> Any:
     return turns.astype(np.int64) if (abs(turns) < 2.0**63).all() else np.frompyfunc(int, 1, 1)(turns)
 
 
-def _moved(rods: Any, sign: int = 1) -> Any:
-    """The constants moved by one unit in the last place, up and down in turn, or down and up."""
-    signs = np.where((np.arange(rods.size) // 3 % 2 == 0).reshape(rods.shape), sign, -sign)
-    return rods * (1.0 + signs * np.finfo(float).eps)
+def _filled(times: Any, count: int) -> tuple[Any, Any]:
+    """``times``, as :func:`split` gives them, with so many more spread evenly among them, and where they are."""
+    more = np.linspace(times[0, 0], times[0, -1], count + 2)[1:-1]
+    every = np.concatenate([times, [more, 0 * more, 0 * more]], axis=1)
+    order = np.argsort(every[0] if times[0, -1] >= times[0, 0] else -every[0], kind="stable")
+    return every[:, order], np.argsort(order)[:times.shape[1]]
 
 
-def _estimate(run: FloatRun, other: FloatRun) -> Any:
-    difference = abs((run.angle - other.angle) + TURN * (run.turns - other.turns)).max(axis=1)
-    grown = np.maximum.accumulate(np.where(np.isfinite(difference), difference, np.inf))
-    return SAFETY * grown + 2 * np.finfo(float).eps * np.pi
+def _estimate(run: FloatRun, others: Sequence[FloatRun], at: Any = slice(None)) -> Any:
+    """From the differences of a run from others, which are at its times with their rows ``at``.
+
+    Between these times the others are compared with each other: a rod that falls, and turns, comes back.
+    """
+    apart = _apart(others[0], others[-1]) / 2
+    for other in others:
+        apart[at] = np.maximum(apart[at], _apart(run, other, at))
+    grown = np.maximum.accumulate(np.where(np.isfinite(apart), apart, np.inf))[at]
+    return SAFETY * grown + 2 * EPSILON * np.pi
+
+
+def _apart(one: FloatRun, other: FloatRun, at: Any = slice(None)) -> Any:
+    return abs((one.angle - other.angle[at]) + TURN * (one.turns - other.turns[at])).max(axis=1)
 
 
 # -- other methods, other digits ------------------------------------------------------------------------------
@@ -211,8 +226,8 @@ def _by_others(chain: CompiledChain, system: Any, theta: Any, omega: Any, times:
         better, error = _to_accuracy(chain, theta, omega, times, max(accuracy * 1e-2, FLOAT_LIMIT), False, None)
     except DriveError:
         other = tolerance / 30 if tolerance >= 30 * FINEST_SCIPY else tolerance * 30
-        return run, _estimate(run, _run(integrate_scipy(_moved_chain(chain), first, rates, times, method, other)))
-    return run, _estimate(run, better) + error
+        return run, _estimate(run, [_run(integrate_scipy(_moved_chain(chain), first, rates, times, method, other))])
+    return run, _estimate(run, [better]) + error
 
 
 def _run(found: tuple[Any, Any, int]) -> FloatRun:
@@ -222,8 +237,8 @@ def _run(found: tuple[Any, Any, int]) -> FloatRun:
 
 
 def _moved_chain(chain: CompiledChain) -> CompiledChain:
-    """The chain with its constants moved as :func:`_moved` does."""
-    m, l, I, _, _, _, mH, _ = _moved(chain.rods).T
+    """The chain with its constants moved as :func:`unsettled` does."""
+    m, l, I, _, _, _, mH, _ = unsettled(chain.rods, 1).T
     center = mH / m
     gyration = np.maximum(np.sqrt(I / m), abs(center))
     return CompiledChain(m, l, center, gyration, chain.gravity, chain.support, chain.damping, chain.springs,

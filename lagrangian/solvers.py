@@ -63,8 +63,8 @@ def heyoka_system(chain: CompiledChain, heyoka: Any) -> Any:
     s, c = (np.array([f(x) for x in joints], dtype=object) for f in (heyoka.sin, heyoka.cos))
     if chain.support.function is not None:
         raise SceneError("heyoka gets the support's motion as waves c cos(qt) + s sin(qt): choose method='taylor'.")
-    constant, waves = chain.support.floats
-    ax, ay = heyoka.expression(constant[0]), heyoka.expression(constant[1] + float(chain.gravity))
+    constant, waves = chain.weighted.floats
+    ax, ay = (heyoka.expression(part) for part in constant)
     for q, _, _, cx, sx, cy, sy in waves:
         cosine, sine = heyoka.cos(q * heyoka.time), heyoka.sin(q * heyoka.time)
         ax, ay = ax + cx * cosine + sx * sine, ay + cy * cosine + sy * sine

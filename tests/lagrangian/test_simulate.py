@@ -579,6 +579,51 @@ def test_an_equilibrium_that_is_no_number_of_half_turns_is_left_by_rounding_and_
     assert abs(float(motion.theta[-1, 0]) + math.pi / 2) <= motion.error[-1]
 
 
+@pytest.mark.parametrize("rod, theta0, end, digits", [
+    ((0.7673225739657772, 0.8692116708822373, 0.8758358274106289, 0.9634194101516919), 2.3450381905984994, 1000, None),
+    ((0.740480100555906, 0.8848321912221966, 0.34460444218245867, 0.6984715483327355), 2.907975061590567, 1000, None),
+    ((0.6548679485592322, 0.36775492891605777, 0.1122347703099625, 0.18433368246336865), 2.782156803979176, 1000, None),
+    ((0.15438475760381065, 0.2931863123828503, 0.4758882872873448, 0.6414132081156557), 3.0506796052167156, 10, 31),
+])
+def test_the_estimate_for_a_single_rod_sees_the_rounding_of_its_data(rod, theta0, end, digits):
+    """theta = 2 asin(k cd(wt, k)), w**2 = g H/R**2: to a single rod only the ratio of m H and I matters."""
+    m, l, H, R = rod
+    motion = simulate(CompiledChain([m], [l], [H], [R], upright=False), [theta0], [0], [0, end], digits=digits)
+    with mpmath.workdps(50):
+        k, w = mpmath.sin(mpmath.mpf(theta0) / 2), mpmath.sqrt(mpmath.mpf(9.81) * H) / R
+        true = 2 * mpmath.asin(k * mpmath.ellipfun("cd", w * end, k=k))
+
+        assert abs(mpmath.mpf(motion.wrapped[-1, 0]) - true) <= motion.error[-1]
+
+
+def test_a_constant_support_that_nearly_holds_the_weight_costs_no_digits():
+    """1e-10 m/s**2 is left of the weight, exactly; a float of the difference of two floats has seven digits of it."""
+    left = Rational(1, 10**10)
+    chain = CompiledChain([1], [1], [0.5], [0.6], Rational(1, 3), (0, left - Rational(1, 3)))
+    rough, fine = (simulate(chain, [0.5], [0], [0, 1e5], digits=digits) for digits in (None, 25))
+
+    assert abs(float(rough.theta[-1, 0] - fine.theta[-1, 0])) <= rough.error[-1] < 1e-11
+
+
+@pytest.mark.parametrize("g", [Rational(3, 37), Rational(1, 3)], ids=str)
+def test_the_estimate_sees_the_rounding_of_weight_and_waves_that_nearly_cancel(g):
+    """1e-9 of the weight is left of it and of a wave so slow that it is all but constant."""
+    w = Rational(1, 10**9)
+    eta = g * cos(w * t) / w**2 * (1 - Rational(1, 10**9))
+    chain = Scene([Rod(1, 1, Rational(1, 2), Rational(3, 5))], Support(0, eta), g, t=t).compile()
+    rough, fine = (simulate(chain, [0.5], [0], [0, 1e5], digits=digits) for digits in (None, 25))
+
+    assert abs(float(rough.theta[-1, 0] - fine.theta[-1, 0])) <= rough.error[-1]
+
+
+def test_an_equilibrium_between_weight_and_a_sideways_pull_is_left_by_rounding_and_the_estimate_says_so():
+    """At 45 degrees, where both are alike; times at which a rod that fell is back on its place."""
+    chain = CompiledChain([1], [1], [0.5], [0.6], gravity=9.81, support_acceleration=(-9.81, 0))
+    for end in (13, 16, 40):
+        motion = simulate(chain, [-pi / 4], [0], [0, end])
+        assert abs(motion.theta[-1, 0] + math.pi / 4) <= motion.error[-1]
+
+
 @pytest.mark.parametrize("digits", [20, 35], ids=["pairs", "balls"])
 def test_springs_know_of_half_turns(digits):
     """Joints bent by half a turn and more, all of it taken out before rounding, bend as they do in float64."""
