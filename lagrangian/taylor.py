@@ -18,6 +18,10 @@ the very equations of order 0 with ``z_j``, this right-hand side as torque, and 
 the inertias are eliminated once a step, and each order costs one pass of forces and four convolutions:
 O(n p**2) a step for p orders, in the same loops for every n; nothing is derived or compiled for a given n.
 
+With the right-hand side ``t = t' + I e`` the unknown is ``t/D - q``, from which ``alpha = t'/D - e l**2 Pnn/D - q`` and
+``B_n = t l**2 Pnn/D + I q`` are taken as written here: ``I/D - 1`` does not cancel.  For a single rod it is 0, where
+``I fl(1/I) - 1`` would be a torque that goes always with the motion, or always against it.
+
 The functions run on float64 after translation, and unchanged on mpmath numbers and balls.
 """
 
@@ -30,7 +34,7 @@ from .recursion import inertia, torque, turned_force, turned_inertia
 
 __all__ = ["expand", "factor", "series_shape"]
 
-FACTORS = 23
+FACTORS = 24
 
 
 def series_shape(n: int, order: int) -> tuple[int, int, int]:
@@ -60,7 +64,7 @@ def factor(rods: Any, s: Any, c: Any, one: Any, factors: Any) -> None:
         f[8], f[9] = -(m * Ic * (mH + l * Puu) + It * (mH * Pnn + l * Delta)) * r, -(J * mG * Pun * r)
         f[10], f[11], f[12], f[13] = torque(m, l, mH, mG, Puu, Pun, Pnn, Delta, r)
         f[14], f[15], f[16], f[17] = l * r, Puu, Pun, r
-        f[18], f[19], f[20], f[21], f[22] = s[k], c[k], l, I, mH
+        f[18], f[19], f[20], f[21], f[22], f[23] = s[k], c[k], l, I, mH, ll * Pnn * r
         Puu, Pun, Pnn = turned_inertia(s[k], c[k], a, x, y)
         Delta = det
 
@@ -95,9 +99,9 @@ def expand(factors: Any, damping: Any, springs: Any, delta: Any, omega: Any, ax:
         for i in range(n):
             k = n - 1 - i
             f, h, x = factors[k], held[k], series[k]
-            X, Y, t = convolved(x[0], x[1], x[2, first:], x[3, first:], x[4, first:], count, none)
+            X, Y, Z = convolved(x[0], x[1], x[2, first:], x[3, first:], x[4, first:], count, none)
             z, e = (j + 1) * Y, (j + 1) * X
-            t = f[21] * e - t
+            t = -Z
             if damping is not None or springs is not None:
                 moment = none
                 if damping is not None:
@@ -117,6 +121,7 @@ def expand(factors: Any, damping: Any, springs: Any, delta: Any, omega: Any, ax:
                 t = t + (beyond - moment)
                 beyond = moment
             h[0], h[1], h[2], h[3], h[4], h[5] = z, t, qn, qu, X, Y
+            t = t + f[21] * e
             f0 = f[0] * qu + f[2] * ku + f[6] * z + f[10] * t
             f1 = f[4] * qn + f[7] * z + f[11] * t
             f2 = f[1] * qu + f[3] * ku + f[8] * z + f[12] * t
@@ -125,13 +130,13 @@ def expand(factors: Any, damping: Any, springs: Any, delta: Any, omega: Any, ax:
         tu, tn = ay[j], ax[j]
         for k in range(n):
             f, h, x = factors[k], held[k], series[k]
-            z, t, X = h[0], h[1], h[4]
+            z, t, X = h[0], h[1] + f[21] * ((j + 1) * h[4]), h[4]
             au, an = tu * f[19] + tn * f[18], tn * f[19] - tu * f[18]
             tu = au - f[20] * z
             tn = f[4] * an + f[14] * t - f[2] * (h[2] + f[16] * tu)
-            beta = f[17] * t - f[11] * an - f[14] * (h[2] + f[16] * tu)
-            rate = beta * per - X
+            slower = f[11] * an + f[14] * (h[2] + f[16] * tu)
+            rate = (f[17] * h[1] - slower) * per - f[23] * X
             x[2, order - 1 - j] = rate
             x[0, j + 2], x[1, j + 2] = -h[5] * next_per, (X + rate) * next_per
-            x[4, order - 1 - j] = t - f[21] * beta
+            x[4, order - 1 - j] = f[23] * t + f[21] * slower
             x[3, order - 1 - j] = f[22] * au + f[20] * (f[15] * tu + f[16] * tn + h[3])
