@@ -32,7 +32,18 @@ from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.duals import Dual, derivative
 from fastpicard.errors import BadInputError, BadTypeError, namesake
-from fastpicard.evaluate import Values, check_digits, exact_values, free_symbols, refine, to_number, upper_float
+from fastpicard.evaluate import (
+    Values,
+    ball,
+    check_assumptions,
+    check_digits,
+    exact_number,
+    exact_values,
+    free_symbols,
+    refine,
+    to_number,
+    upper_float,
+)
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, known_structure, reversal
 from fastpicard.latex import meaning, number, sentence, shown
@@ -265,6 +276,8 @@ class Boundary:
                                 f"Choose one of these.{namesake((x,), self.symbols)}")
         if not isinstance(bracket, tuple | list) or len(bracket) != 2:
             raise BadTypeError(f"the bracket must be two numbers (lo, hi), but it is {bracket!r}.  Give both ends.")
+        for end in bracket:
+            check_assumptions(x, ball(exact_number(end, "an end of the bracket")))
         if x in mapping_of(fixed):
             raise BadInputError(f"the unknown is sought, but {x} is fixed at {mapping_of(fixed)[x]}.  Leave it out of "
                                 "fixed.")

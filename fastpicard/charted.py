@@ -25,7 +25,7 @@ from sympy import Expr, Symbol
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, namesake, printed
-from fastpicard.evaluate import Values, exact_number, expression_ball, numpy, upper_float
+from fastpicard.evaluate import Values, check_assumptions, exact_number, expression_ball, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.reading import as_expression
 from fastpicard.ring import Monomial, expression_of, symbols_of
@@ -209,7 +209,20 @@ def read_chart(F: FloquetMatrix, x: Any, y: Any, fixed: Values | None, modes: An
     axes = (_with_power(first, used[0]), _with_power(second, used[1]))
     chart = Charted(F, axes, members, decoupled)
     _refuse_infinities(chart)
+    _check_members(chart)
     return chart
+
+
+def _check_members(chart: Charted) -> None:
+    """Raise BadInputError where a mode gives a parameter values that its assumptions exclude."""
+    for member in chart.members if chart.decoupled else ():
+        for s, (number, powers) in member.items():
+            if any(powers):
+                refuse_integer(s)
+            for x in (chart.axes[0].lo, chart.axes[0].hi):
+                for y in (chart.axes[1].lo, chart.axes[1].hi):
+                    value = constant_ball(number) * arb(x) ** powers[0] * arb(y) ** powers[1]
+                    check_assumptions(s, value)
 
 
 def _refuse_infinities(chart: Charted) -> None:
@@ -261,6 +274,8 @@ def fixed_numbers(fixed: Values | None, free: Iterable[Symbol]) -> dict[Symbol, 
             raise BadTypeError(f"fixed must map SymPy Symbols to numbers, but a key is {printed(s)}, a "
                                f"{type(s).__name__}.  Use the Symbol itself: {{c: 1}}.")
     numbers = {s: _exact_expression(value, s) for s, value in mapping_of(fixed).items()}
+    for s, number in numbers.items():
+        check_assumptions(s, number)
     for s in free:
         if s in numbers:
             raise BadInputError(f"a parameter has one value, but {s} is fixed at {printed(numbers[s])} and is "
@@ -280,6 +295,8 @@ def axes_of(x: Any, y: Any) -> tuple[Axis, Axis]:
     first, second = axis_of(x, "x"), axis_of(y, "y")
     for axis in (first, second):
         refuse_integer(axis.symbol)
+        for end in (axis.lo, axis.hi):
+            check_assumptions(axis.symbol, arb(end))
     if first.symbol.name == second.symbol.name:
         raise BadInputError(f"the axes must be different parameters, but both are {first.symbol}.  Choose two, of "
                             "different names.")

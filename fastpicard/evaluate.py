@@ -136,20 +136,29 @@ def exact_values(values: Values | None, needed: Iterable[Symbol], t: Symbol,
 def check_assumptions(s: Symbol, value: Any) -> None:
     """Raise BadInputError for a value that the assumptions of a Symbol exclude: SymPy has made use of them.
 
-    Zero is let pass where they say positive or negative: it is the end of what they allow.
+    Of a ball one number in it must be allowed.  Zero is let pass where they say positive or negative: it is the end of
+    what they allow.
     """
-    exact = None if isinstance(value, arb) else value if isinstance(value, Expr) else sympy.Rational(
-        int(value.p), int(value.q))
-    low, high = (value < 0, value > 0) if exact is None else (exact.is_negative, exact.is_positive)
-    wrong = {"an integer": s.is_integer and exact is not None and not exact.is_integer,
-             "even": s.is_even and exact is not None and exact.is_odd,
-             "odd": s.is_odd and exact is not None and exact.is_even,
+    if isinstance(value, arb):
+        integer, even, odd = (_holds_integer(value), _holds_integer(value / 2), _holds_integer((value - 1) / 2))
+        low, high = value < 0, value > 0
+    else:
+        exact = value if isinstance(value, Expr) else sympy.Rational(int(value.p), int(value.q))
+        integer, even, odd = exact.is_integer, not exact.is_odd, not exact.is_even
+        low, high = exact.is_negative, exact.is_positive
+    wrong = {"an integer": s.is_integer and not integer,
+             "even": s.is_even and not even,
+             "odd": s.is_odd and not odd,
              "positive": s.is_positive and low, "not negative": s.is_nonnegative and low,
              "negative": s.is_negative and high, "not positive": s.is_nonpositive and high}
     for what, excluded in wrong.items():
         if excluded:
             raise BadInputError(f"{s} is {what} by its assumptions, which SymPy has made use of, but its value is "
                                 f"{printed(value)}.  Give another value, or use a Symbol without that assumption.")
+
+
+def _holds_integer(x: Any) -> bool:
+    return bool(x.contains_integer()) if x.is_finite() else True
 
 
 def ball(value: Any) -> Any:
@@ -357,8 +366,8 @@ def _settle(x: Any, needed: int) -> Any:
     if x.contains(0) and x.rad() < arb(2) ** -(needed + EXTRA_BITS // 2):
         return arb(0)
     if not x.is_finite():
-        raise BadInputError("a value must be finite, but there is none here: a pole of the coefficients.  Keep away "
-                            "from there.")
+        raise BadInputError("a value must be finite, but there is none here: a pole of the coefficients, or a "
+                            "resonance of frequencies.  Keep away from there.")
     raise BadInputError(f"the digits asked for cannot be had: the value lies in {x}.  Give exact parameters instead of "
                         "balls with a radius.")
 

@@ -214,7 +214,10 @@ class FloquetMatrix(AsMatrix):
         return FloquetMatrix, (self.P, self.t, self.n, self.period)
 
     def as_matrix(self) -> ImmutableMatrix:
-        """The exact matrix, entries expanded: polynomials in the parameters and the period."""
+        """The exact matrix, entries expanded: polynomials in the parameters and the period.
+
+        With Symbols among the frequencies it is that of generic ones: at a resonance it is another.
+        """
         rows, columns = self.shape
         return ImmutableMatrix([[self[i, j] for j in range(columns)] for i in range(rows)])
 

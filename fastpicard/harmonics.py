@@ -95,7 +95,7 @@ class Harmonics:
 
 def reversing_signs(size: int, parities: Mapping[Place, tuple[bool, bool]]) -> tuple[int, ...] | None:
     """Signs ``s_i``, the first of them 1, that reverse time, if entry ``(i, j)`` has an even part, an odd one."""
-    links = [(i, j, even, odd) for (i, j), (even, odd) in parities.items()]
+    links = [(i, j, even, odd) for (i, j), (even, odd) in parities.items() if even or odd]  # not those that vanish
     if any(even and odd or i == j and even for i, j, even, odd in links):
         return None
     signs: dict[int, int] = {}

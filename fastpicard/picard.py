@@ -258,7 +258,11 @@ class PicardIterate(AsMatrix):
         return self.series.as_matrix()
 
     def __call__(self, time: Any) -> ImmutableMatrix:
-        """The exact iterate at a time: SymPy expressions in the parameters."""
+        """The exact iterate at a time: SymPy expressions in the parameters.
+
+        With Symbols among the frequencies it is that of generic ones: at a resonance it is another, also where SymPy
+        has made ``sin(2*pi*k)/k`` zero for an integer k.
+        """
         return self.series(time)
 
     def evaluate(self, t_value: Any, values: Values | None = None, digits: int | None = None) -> Any:

@@ -907,6 +907,38 @@ def test_a_value_is_what_the_symbol_says_it_is(assumed, value, allowed):
             F.lambdify([s, a])([float(allowed), float(value)], 1)
 
 
+@pytest.mark.parametrize("value", [arb(0.5), arb(0.5, 1e-9), (0.5, 0.5), (Rational(1, 3), Rational(2, 3))], ids=shown)
+def test_a_ball_without_an_integer_is_no_value_of_one(value):
+    """Its period is another; a ball with one stands for that."""
+    n, m = Symbol("n", integer=True), Symbol("m", even=True)
+    F = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(n * t) - cos(m * t / 2), 0]]), t, 4)
+    at = {a: Rational(1, 16), b: 0.1}
+    for values in ({**at, n: value, m: 2}, {**at, n: 1, m: value}, {**at, n: 1, m: arb(1)}, {**at, n: 1, m: (1, 1)}):
+        for ask in (F.verdict, F.remainder, F.multipliers):
+            with pytest.raises(BadInputError, match="by its assumptions"):
+                ask(values)
+    assert F.remainder({**at, n: arb(1, 0.1), m: (2, 2)}) > 0
+
+
+@pytest.mark.parametrize("draw", [chart, certify, tubes])
+def test_charts_ask_what_symbols_assume(draw):
+    """Fixed values, ends of axes, and what modes give."""
+    e, p, n = Symbol("e", even=True), Symbol("p", positive=True), Symbol("n", integer=True)
+    F = FloquetMatrix(Matrix([[0, 1], [-a - (-1) ** e / 4 - b * cos(t) - p * cos(2 * t) - n, 0]]), t, 4)
+    G = F.to_order(0)
+    for fixed in ({e: 1, p: 1, n: 1}, {e: 2, p: -1, n: 1}, {e: 2, p: 1, n: Rational(1, 2)}):
+        with pytest.raises(BadInputError, match="by its assumptions"):
+            draw(G, (a, 0, 1), (b, 0, 1), fixed=fixed)
+    with pytest.raises(BadInputError, match="p is positive"):
+        draw(G, (a, 0, 1), (p, -1, 1), fixed={e: 2, n: 1, b: 1})
+    if draw is not tubes:
+        for mode in ({a: a, b: b, p: -1, n: 1}, {a: a, b: b, p: a, n: 1}, {a: a, b: b, p: 1, n: b}):
+            with pytest.raises(BadInputError, match="by its assumptions"):
+                draw(G, (a, -1, 1), (b, 0, 1), modes=[mode])
+    with pytest.raises(BadInputError, match="p is positive"):
+        boundaries(F)[0].root(p, (-2, -1), {e: 2, n: 1, a: 1, b: 1})
+
+
 def test_charts_and_curves_go_through_numbers_not_integers():
     """A frequency, or a parameter that is an integer, is no axis; a phase without a value is named."""
     n, w, phi = Symbol("n", integer=True), Symbol("w"), Symbol("phi")

@@ -34,6 +34,12 @@ def test_reversal_holds_at_all_parameters_or_is_not_claimed(P, expected):
 WAVES = st.sampled_from([0, 1, a, cos(t), b * cos(2 * t), sin(t), a * sin(3 * t), cos(t + phi)])
 
 
+def test_an_entry_that_vanishes_at_numbers_joins_nothing():
+    """Without b cos 2t between them, rows 0 and 2 have opposite signs."""
+    F = FloquetMatrix(Matrix([[0, cos(t), b * cos(2 * t)], [0, sin(t), 0], [cos(t), 0, 0]]), t, 0)
+    assert F.at(F.numbers({b: 0}))[0].reversal == F.at(F.numbers({b: 1}))[0].reversal == (1, -1, -1)
+
+
 @settings(max_examples=60)
 @given(st.lists(WAVES, min_size=9, max_size=9), st.fractions(-3, 3), st.fractions(-3, 3), st.fractions(-3, 3))
 def test_what_holds_for_symbols_holds_at_numbers(entries, x, y, z):
