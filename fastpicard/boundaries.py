@@ -32,18 +32,7 @@ from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho
 from fastpicard.duals import Dual, derivative
 from fastpicard.errors import BadInputError, BadTypeError, namesake
-from fastpicard.evaluate import (
-    Values,
-    ball,
-    check_assumptions,
-    check_digits,
-    exact_number,
-    exact_values,
-    free_symbols,
-    refine,
-    to_number,
-    upper_float,
-)
+from fastpicard.evaluate import ball, check_digits, free_symbols, refine, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, known_structure, reversal
 from fastpicard.latex import meaning, number, sentence, shown
@@ -52,6 +41,7 @@ from fastpicard.precision import working
 from fastpicard.remainder import a_posteriori
 from fastpicard.ring import symbols_of
 from fastpicard.series import PoissonSeries
+from fastpicard.values import Values, check_assumptions, exact_number, exact_values
 
 Matrix = list[list[Any]]
 

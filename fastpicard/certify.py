@@ -26,7 +26,7 @@ from fastpicard import plotting
 from fastpicard.charted import Axis, Charted, images, read_chart, refuse_phases
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import Values, ball, exact_number, numpy, upper_float
+from fastpicard.evaluate import ball, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
 from fastpicard.latex import interval, sentence, shown
@@ -37,6 +37,7 @@ from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
 from fastpicard.taylormodels import Models, stacked
 from fastpicard.tubes import Tubes
+from fastpicard.values import Values, exact_number
 
 Array = Any
 REMAINDER = 1e-13  # of every entry, on all rectangles that are not decided by convexity

@@ -30,7 +30,7 @@ from sympy import Symbol
 from fastpicard.charted import Charted, Member, read_chart
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import Values, numpy
+from fastpicard.evaluate import numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, known_structure, reversal
 from fastpicard.local import BITS, convex, span_at
@@ -39,6 +39,7 @@ from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.structure import Structure
 from fastpicard.sweeps import chart_type, in_parts
+from fastpicard.values import Values
 from fastpicard.vectorise import Evaluator
 
 Array = Any

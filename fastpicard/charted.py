@@ -25,10 +25,11 @@ from sympy import Expr, Symbol
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, namesake, printed
-from fastpicard.evaluate import Values, check_assumptions, exact_number, expression_ball, numpy, upper_float
+from fastpicard.evaluate import expression_ball, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.reading import as_expression
 from fastpicard.ring import Monomial, expression_of, symbols_of
+from fastpicard.values import Values, check_assumptions, exact_number
 
 Array = Any
 Exponents = tuple[int, int]

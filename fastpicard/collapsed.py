@@ -19,22 +19,12 @@ from sympy import Symbol
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, printed
-from fastpicard.evaluate import (
-    Point,
-    Values,
-    check_digits,
-    exact_number,
-    exact_values,
-    free_symbols,
-    may_vanish,
-    numpy,
-    refine,
-    to_number,
-)
+from fastpicard.evaluate import Point, check_digits, free_symbols, may_vanish, numpy, refine, to_number
 from fastpicard.horner import Exponents, program, run
 from fastpicard.modes import COS, NO_ANGLE, SIN, Angle, Linear, Modes, as_polynomial
 from fastpicard.precision import working
 from fastpicard.ring import Monomial, expression_of, symbols_of, to_expression
+from fastpicard.values import Values, exact_number, exact_values
 
 REMEMBERED = 6  # precisions whose coefficients are kept
 

@@ -15,11 +15,12 @@ from fastpicard.boundaries import Boundary
 from fastpicard.charted import fixed_numbers, point_of, refuse_integer
 from fastpicard.curves import exact_ball, resolved
 from fastpicard.errors import BadInputError, BadTypeError
-from fastpicard.evaluate import Point, Values, exact_values
+from fastpicard.evaluate import Point
 from fastpicard.harmonics import Harmonics
 from fastpicard.precision import working
 from fastpicard.remainder import a_priori
 from fastpicard.ring import Monomial, expression_of, symbols_of
+from fastpicard.values import Values, exact_values
 
 EXPONENTS = (-60, -48, -36, -24)  # of 2: half the sides of the boxes that are tried
 

@@ -24,8 +24,9 @@ from typing import Any
 from flint import arb, ctx, fmpq
 
 from fastpicard.errors import BadInputError
-from fastpicard.evaluate import exact_number, numpy, to_number
+from fastpicard.evaluate import numpy, to_number
 from fastpicard.precision import working
+from fastpicard.values import exact_number
 
 MOST = 60  # evaluations of one zero
 MOST_BITS = 1 << 14  # of the working precision

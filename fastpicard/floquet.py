@@ -24,16 +24,7 @@ from fastpicard.collapsed import Collapsed
 from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
 from fastpicard.errors import BadInputError, printed
-from fastpicard.evaluate import (
-    Values,
-    ball,
-    check_digits,
-    count_of_digits,
-    exact_number,
-    may_vanish,
-    to_complex,
-    upper_float,
-)
+from fastpicard.evaluate import ball, check_digits, count_of_digits, may_vanish, to_complex, upper_float
 from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
@@ -49,6 +40,7 @@ from fastpicard.ring import ONE, Polynomial, multiply, read_only, symbols_of
 from fastpicard.spectrum import Multiplier, multipliers_of
 from fastpicard.stability import Verdict, judge
 from fastpicard.structure import Structure, structure
+from fastpicard.values import Values, exact_number
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
 

@@ -22,10 +22,11 @@ from flint import arb
 from mpmath.libmp import dps_to_prec, from_rational
 
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import ball, count_of_digits, exact_number
+from fastpicard.evaluate import ball, count_of_digits
 from fastpicard.mathieu_guess import Guess, float_guess
 from fastpicard.mathieu_matrices import Matrix
 from fastpicard.precision import working
+from fastpicard.values import exact_number
 
 
 def mathieu_a(r: int, q: Any, digits: int = 15) -> Any:

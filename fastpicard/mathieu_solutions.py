@@ -22,10 +22,11 @@ from mpmath.libmp import dps_to_prec
 
 from fastpicard.enclosure import shortfall, to_digits, transition
 from fastpicard.errors import BadInputError
-from fastpicard.evaluate import EXTRA_BITS, ball, count_of_digits, exact_number, to_complex, to_number
+from fastpicard.evaluate import EXTRA_BITS, ball, count_of_digits, to_complex, to_number
 from fastpicard.harmonics import Harmonics
 from fastpicard.parameters import is_box
 from fastpicard.precision import working
+from fastpicard.values import exact_number
 
 MOST_TURNS = 2**63 - 1
 

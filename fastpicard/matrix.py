@@ -14,12 +14,13 @@ from sympy import ImmutableMatrix, Symbol
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadInputError, BadTypeError, FastPicardError, ShapeError, printed
-from fastpicard.evaluate import Values, check_digits, evaluate, free_symbols, numpy
+from fastpicard.evaluate import check_digits, evaluate, free_symbols, numpy
 from fastpicard.latex import shown, summary
 from fastpicard.modes import Modes
 from fastpicard.reading import as_finite, as_time, check_same_time, plain, read, read_constant, shifted
 from fastpicard.ring import Polynomial, read_only
 from fastpicard.series import PoissonSeries
+from fastpicard.values import Values
 from fastpicard.writing import write, write_at
 
 Rows = tuple[tuple[Modes, ...], ...]

@@ -13,11 +13,12 @@ from flint import arb
 from sympy import Expr
 
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import Point, Values, ball, exact_number, exact_values, free_symbols
+from fastpicard.evaluate import Point, ball, free_symbols
 from fastpicard.harmonics import Harmonics, harmonics
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.precision import working
 from fastpicard.ring import Polynomial
+from fastpicard.values import Values, exact_number, exact_values
 
 BOUND_BITS = 8192  # the precision of P and T where a bound is asked for, or where less leaves them in doubt
 

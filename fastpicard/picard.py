@@ -27,13 +27,13 @@ from sympy.logic.boolalg import Boolean
 
 from fastpicard.collapsed import Collapsed
 from fastpicard.errors import BadInputError, BadTypeError, ShapeError, printed
-from fastpicard.evaluate import Values
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
 from fastpicard.matrix import AsMatrix, SeriesMatrix, as_list, latex_or_summary, read_matrix, read_vector
 from fastpicard.reading import as_expression, as_finite, as_polynomial, as_time, check_same_time, plain, read_constant
 from fastpicard.ring import Polynomial, to_expression
 from fastpicard.series import PoissonSeries
+from fastpicard.values import Values
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import dyadic, write
 

@@ -16,11 +16,12 @@ from sympy import Expr, Symbol
 from fastpicard import modes as algebra
 from fastpicard.equality import support, vanishes
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import Values, evaluate, free_symbols
+from fastpicard.evaluate import evaluate, free_symbols
 from fastpicard.latex import sentence, shown
 from fastpicard.modes import Modes
 from fastpicard.reading import as_expression, as_finite, as_time, check_same_time, read, read_constant
 from fastpicard.ring import ONE, rational
+from fastpicard.values import Values
 from fastpicard.writing import dyadic, write, write_at
 
 SHORT = 12  # terms printed before the rest is counted

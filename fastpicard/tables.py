@@ -26,11 +26,12 @@ from mpmath.libmp import dps_to_prec
 
 from fastpicard.enclosure import mirrored, shortfall
 from fastpicard.errors import BadInputError, BadTypeError, printed
-from fastpicard.evaluate import Point, Values, check_digits, may_vanish, refine, upper_float
+from fastpicard.evaluate import Point, check_digits, may_vanish, refine, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import half_period, reversal
 from fastpicard.precision import working
 from fastpicard.remainder import a_priori_order, largest_row_sum
+from fastpicard.values import Values
 
 SPARE_DIGITS = 5  # what entries lose to cancellation, mostly
 HIGHEST = 300  # order of a table: beyond, the terms of an iterate in one parameter fill the memory

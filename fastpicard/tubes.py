@@ -28,7 +28,7 @@ from sympy import Matrix, Symbol, latex
 from fastpicard.charted import Charted, Exponents, read_chart
 from fastpicard.criteria import criterion
 from fastpicard.errors import BadInputError, printed
-from fastpicard.evaluate import Values, ball, exact_number, numpy, to_number, upper_float
+from fastpicard.evaluate import ball, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.harmonics import Harmonics
 from fastpicard.latex import interval, meaning, number, shown
@@ -38,6 +38,7 @@ from fastpicard.precision import working
 from fastpicard.rectangles import Rectangles
 from fastpicard.remainder import a_priori
 from fastpicard.taylormodels import Models
+from fastpicard.values import Values, exact_number
 
 Array = Any
 TERMS = 30  # of the Taylor polynomials

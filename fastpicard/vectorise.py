@@ -31,9 +31,10 @@ from fastpicard import doubledouble
 from fastpicard.collapsed import Collapsed, Variable
 from fastpicard.doubledouble import SLACK, UNIT, Polynomial
 from fastpicard.errors import BadInputError, BadTypeError, MissingParameterError, ShapeError, namesake
-from fastpicard.evaluate import Point, check_assumptions, numpy, to_number
+from fastpicard.evaluate import Point, numpy, to_number
 from fastpicard.precision import working
 from fastpicard.ring import symbols_of
+from fastpicard.values import check_assumptions
 
 Array = Any
 BLOCK = 8192  # points at a time: the arrays of a block stay in the cache
