@@ -26,7 +26,7 @@ from flint import arb, ctx
 from mpmath.libmp import dps_to_prec
 from sympy import Expr, Symbol, latex
 
-from fastpicard.charted import axes_of, fixed_numbers, mapping_of, point_of, refuse_integer
+from fastpicard.axes import axes_of, fixed_numbers, mapping_of, point_of, refuse_integer
 from fastpicard.collapsed import Collapsed
 from fastpicard.curves import curve, exact_ball, zero
 from fastpicard.determinants import determinant, hermite, power_sums, sums_of_rho

@@ -23,7 +23,8 @@ from typing import Any
 from sympy import Symbol
 
 from fastpicard import plotting
-from fastpicard.charted import Axis, Charted, images, read_chart, refuse_phases
+from fastpicard.axes import Axis
+from fastpicard.charted import Charted, images, read_chart, refuse_phases
 from fastpicard.criteria import Criterion, criterion
 from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import ball, numpy, upper_float
@@ -213,7 +214,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     -----
     Stable means bounded solutions; with damping, asymptotically stable.  Mathieu's equation, a in [-1, 5], b in [0, 6]:
     all but 1e-4 of the area in 3 to 10 s by machine, see ``benchmarks/charts.py``.  Of a damped one the iterate alone
-    may take longer, and twice as long with 0.1, a dyadic number of 55 bits, in place of ``Rational(1, 10)``.
+    may take longer, and longer still with 0.1, a dyadic number of 55 bits, in place of ``Rational(1, 10)``.
 
     Examples
     --------

@@ -11,8 +11,8 @@ from typing import Any
 from flint import arb, arb_mat, fmpq
 from sympy import Symbol
 
+from fastpicard.axes import fixed_numbers, point_of, refuse_integer
 from fastpicard.boundaries import Boundary
-from fastpicard.charted import fixed_numbers, point_of, refuse_integer
 from fastpicard.curves import exact_ball, resolved
 from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import Point

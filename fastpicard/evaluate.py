@@ -251,8 +251,8 @@ def _settle(x: Any, needed: int) -> Any:
     if x.contains(0) and x.rad() < arb(2) ** -(needed + EXTRA_BITS // 2):
         return arb(0)
     if not x.is_finite():
-        raise BadInputError("a value must be finite, but there is none here: a pole of the coefficients, or a "
-                            "resonance of frequencies.  Keep away from there.")
+        raise BadInputError(f"a value must be finite, but it is {x} here: a pole of the coefficients, or a resonance "
+                            "of frequencies.  Keep away from there.")
     raise BadInputError(f"the digits asked for cannot be had: the value lies in {x}.  Give exact parameters instead of "
                         "balls with a radius.")
 

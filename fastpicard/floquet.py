@@ -32,7 +32,6 @@ from fastpicard.matrix import AsMatrix, SeriesMatrix, latex_or_summary, number_m
 from fastpicard.modes import Linear, Modes
 from fastpicard.parameters import BOUND_BITS, is_box, numbers_in, problem_at
 from fastpicard.period import check_period, whole_turns
-from fastpicard.picard import check_order
 from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
@@ -40,7 +39,7 @@ from fastpicard.ring import ONE, Polynomial, multiply, read_only, symbols_of
 from fastpicard.spectrum import Multiplier, multipliers_of
 from fastpicard.stability import Verdict, judge
 from fastpicard.structure import Structure, structure
-from fastpicard.values import Values, exact_number
+from fastpicard.values import Values, check_order, exact_number
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fastpicard.charted import Axis
+from fastpicard.axes import Axis
 from fastpicard.evaluate import numpy
 from fastpicard.taylormodels import UNIT
 

@@ -19,6 +19,7 @@ from fastpicard.reading import plain
 from fastpicard.ring import rational
 
 Values = Mapping[Any, Any]
+LARGEST_ORDER = 100_000
 
 
 def exact_number(value: Any, what: str) -> Any:
@@ -132,3 +133,17 @@ def check_assumptions(s: Symbol, value: Any) -> None:
 
 def _holds_integer(x: Any) -> bool:
     return bool(x.contains_integer()) if x.is_finite() else True
+
+
+def check_order(n: Any) -> int:
+    """The order of an iterate, an integer from 0 to LARGEST_ORDER."""
+    if isinstance(n, bool) or not isinstance(n, numbers.Integral):
+        raise BadTypeError(f"the order n must be an integer, but it is {printed(n)}, a {type(n).__name__}.  Use "
+                           "n=20, say.")
+    if n < 0:
+        raise BadInputError(f"the order n must be an integer from 0 up, but it is {printed(n)}.  n counts the "
+                            "integrations.")
+    if int(n) > LARGEST_ORDER:
+        raise BadInputError(f"an iterate is made of all orders before it, and the order n is {printed(n)}.  Use "
+                            f"at most {LARGEST_ORDER}; iterates rarely gain anything beyond 100.")
+    return int(n)

@@ -5,7 +5,7 @@ constants of rods and joints, weight and waves moved by a unit in the last place
 differences show truncation, rounding and the rounding of the data, as the motion itself amplifies them.  The estimate
 is six times the largest difference so far, between the times asked for too; two of them are seldom both small by
 chance.  Where it exceeds the accuracy asked for, steps are made finer, down to the rounding of float64; what chaos then
-still takes is reported, never hidden: from 2 rad, 10 s, two bobs keep 12 digits, ten keep 2, and ten uniform rods none.
+still takes is reported, never hidden: from 2 rad, 10 s, two bobs keep 12 digits, ten one, ten uniform rods none.
 """
 
 from __future__ import annotations
@@ -89,11 +89,11 @@ def simulate(system: CompiledChain | Ensemble | EquationsOfMotion | CompiledEqua
 
     Speed and accuracy
     ------------------
-    Ten seconds from 2 rad: 3 ms for two bobs (12 digits are left), 10 ms for five (8), 30 ms for ten (2), after a
-    few seconds of translation once per machine.  These are true errors; the estimate claims two digits less.
-    Of uniform rods two keep 9 digits, five one, ten none.  Two bobs with 28 digits: 0.03 to 0.12 s by machine, after
-    6 s of translation; with 50 digits 5 to 10 s.  A trajectory never claims what it has not: see ``trajectory.error``,
-    ``.predictable_until`` and ``.verdict``.  ``benchmarks/chains.py motion`` measures what is left.
+    Ten seconds from 2 rad: 2 to 3 ms by machine for two bobs (12 digits are left), 6 to 10 ms for five (8), 20 to 30 ms
+    for ten (one), after a few seconds of translation once per machine.  These are true errors; the estimate claims up
+    to two digits less.  Of uniform rods two keep 9 digits, five and ten none.  Two bobs with 28 digits: 0.03 to 0.12 s,
+    after 6 s of translation; with 50 digits 5 to 10 s.  A trajectory never claims what it has not: see
+    ``trajectory.error``, ``.predictable_until`` and ``.verdict``.  ``benchmarks/chains.py motion`` measures this.
 
     >>> chain = CompiledChain([1, 1], [1, 1], [0.5, 0.5], [0.6, 0.6], upright=False)
     >>> motion = simulate(chain, [1, 2], [0, 0], [0, 1, 2])
