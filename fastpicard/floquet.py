@@ -308,7 +308,8 @@ class FloquetMatrix(AsMatrix):
         The smaller of two bounds for each entry (module ``remainder``): the a-priori sum of
         ``(Pbar T)**k / k!`` over ``k > n``, and the a-posteriori one, which computes the next increments at
         these parameters and is the true error to a few percent at points.  It takes some 0.1 s for Mathieu's
-        equation (``benchmarks/enclosure.py``), and far longer where ``Pbar T`` is large or waves are fast.
+        equation (``benchmarks/enclosure.py``), and far longer where ``Pbar T`` is large or waves are fast.  Where
+        ``Pbar T`` is beyond n and 300, the a-priori sum, far too large then, is all there is.
 
         Examples
         --------

@@ -12,7 +12,8 @@ The true matrix is the sum of all increments, ``Phi = I_0 + I_1 + ...``, so
 *A posteriori*, the next ``m`` increments are computed at the parameters in question,
 and the a-priori sum bounds only what follows them: cancellation inside an increment,
 which the first bound cannot see, is then seen.  ``m`` grows until the rest is below a
-hundredth of the sum, so the bound is the true error to a few percent.
+hundredth of the sum, so the bound is the true error to a few percent; ``m`` is not searched for where increments
+grow up to an order beyond n and ``MOST_INCREMENTS``.
 
 Each increment is kept on pieces of the period as a polynomial in balls (a Taylor model
 in time): for ``u`` in [0, 1] a term ``c u**j`` of degree ``j > d`` lies in ``[-|c|, |c|] u**d``,
@@ -74,7 +75,7 @@ def a_posteriori(P: Harmonics, period: Any, n: int) -> Any:
             next(source)
         while 100 * largest_row_sum(rest) > largest_row_sum(_upper(total)) and not _is_zero(rest):
             k += 1
-            with working(BITS):
+            with working(_bits(level)):
                 total = total + next(source)
             rest = a_priori(P, period, k)
         if _is_sharp(total) or P.is_wide:
@@ -163,10 +164,15 @@ def largest_row_sum(matrix: Any) -> Any:
 # -- increments as Taylor models in time -------------------------------------
 
 
+def _bits(level: int) -> int:
+    return 192 << level
+
+
 def increments_at_end(P: Harmonics, period: Any, n: int, level: int = 0) -> Iterator[Any]:
     """``I_0(T), I_1(T), ...`` as ``arb_mat``; orders around n keep many digits, more at a higher level."""
-    pieces = max(8, n // 6, math.ceil(float((abs(period) * P.highest).upper()) / 2))
-    degree, bits = 36 + 20 * level, 192 << level
+    fastest = float((abs(period) * P.highest).upper()) / 2
+    pieces = max(8, n // 6, math.ceil(fastest), math.ceil(_peak(P, period) / 4))
+    degree, bits = 36 + 20 * level, _bits(level)
     size = P.size
     with working(bits):
         step = period / pieces

@@ -132,6 +132,27 @@ def test_irrational_numbers_in_P_and_period_are_bounded_as_well():
     assert float(error_norm(F, {})) <= F.remainder() <= 1.2 * float(error_norm(F, {}))
 
 
+@pytest.mark.parametrize("height", [5, 15])
+@pytest.mark.parametrize("n", [5, 30])
+def test_increments_that_cancel_over_the_period_are_bounded_sharply(height, n):
+    """Of x' = (h cos t - 1) x they are (-2 pi)**k / k! at the end, and up to e**(4 h) on the way."""
+    bound = FloquetMatrix(Matrix([[height * cos(t) - 1]]), t, n).remainder()
+    with mpmath.workdps(40):
+        turn = -2 * mpmath.pi
+        error = abs(mpmath.exp(turn) - sum(turn**k / mpmath.factorial(k) for k in range(n + 1)))
+
+    assert error <= bound <= 1.02 * error
+
+
+def test_increments_that_cancel_each_other_are_bounded_sharply():
+    """Of x' = -20 x the sum has terms of 1e53, and what is left of it is 3e23."""
+    with mpmath.workdps(80):
+        turns = -40 * mpmath.pi
+        error = abs(mpmath.exp(turns) - sum(turns**k / mpmath.factorial(k) for k in range(21)))
+
+    assert error <= FloquetMatrix(Matrix([[-20]]), t, 20).remainder() <= 1.02 * error
+
+
 @pytest.mark.parametrize(
     "values, error",
     [
