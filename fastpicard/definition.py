@@ -59,9 +59,9 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     t = as_time(t)
     start = _plain_vector(x0, t)
     t0 = _plain_constant(t0, t, "t0")
-    s = sympy.Dummy("s")
     x = Matrix(start)
-    for _ in range(check_order(n)):
+    for k in range(check_order(n)):
+        s = sympy.Dummy(f"s{k + 1}")  # of every integration its own, should one stay in another
         slope = _slope(f(t, x), t)
         if slope.shape != x.shape:
             raise BadInputError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "

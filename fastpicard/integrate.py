@@ -18,8 +18,9 @@ from sympy import Expr, Symbol
 
 from fastpicard import modes as algebra
 from fastpicard.errors import BadTypeError
+from fastpicard.origin import at_time
 from fastpicard.reading import as_finite, as_time, check_same_time, read
-from fastpicard.writing import gathered, write, write_at
+from fastpicard.writing import gathered, write
 
 
 def gather(expr: Any, t: Symbol) -> Expr:
@@ -99,8 +100,8 @@ def new_integrate(expr: Any, variable: Any) -> Any:
         return write(antiderivative, t)
     lower, upper = limits
     if lower == 0:
-        return write(antiderivative, t) if upper == t else write_at(antiderivative, upper)
-    return write_at(antiderivative, upper) - write_at(antiderivative, lower)
+        return write(antiderivative, t) if upper == t else at_time(antiderivative, upper, t)
+    return at_time(antiderivative, upper, t) - at_time(antiderivative, lower, t)
 
 
 def _variable(variable: Any) -> tuple[Symbol, tuple[Expr, Expr] | None]:

@@ -17,11 +17,12 @@ from fastpicard.errors import BadInputError, BadTypeError, FastPicardError, Shap
 from fastpicard.evaluate import check_digits, evaluate, free_symbols, numpy
 from fastpicard.latex import shown, summary
 from fastpicard.modes import Modes
-from fastpicard.reading import as_finite, as_time, check_same_time, plain, read, read_constant, shifted
+from fastpicard.origin import at_time, shifted
+from fastpicard.reading import as_time, plain, read, read_constant
 from fastpicard.ring import Polynomial, read_only
 from fastpicard.series import PoissonSeries
 from fastpicard.values import Values
-from fastpicard.writing import write, write_at
+from fastpicard.writing import write
 
 Rows = tuple[tuple[Modes, ...], ...]
 
@@ -165,9 +166,7 @@ class SeriesMatrix(AsMatrix):
 
     def __call__(self, time: Any) -> ImmutableMatrix:
         """The exact matrix at a time."""
-        value = as_finite(time, "the time")
-        check_same_time(value, self.t)
-        return ImmutableMatrix([[write_at(modes, value) for modes in row] for row in self.rows])
+        return ImmutableMatrix([[at_time(modes, time, self.t) for modes in row] for row in self.rows])
 
     def evaluate(self, time: Any, values: Values | None = None, digits: int | None = None) -> Any:
         """The matrix at a time: a float64 array, or an mpmath matrix with ``digits`` correct digits."""

@@ -301,7 +301,7 @@ def _read_trigonometric(e: Expr, t: Symbol) -> Modes:
     if argument is None:
         return _read_other(e, t)
     angle, half_turns = argument
-    return _trigonometric(SIN if isinstance(e, sin) else COS, angle, half_turns, t)
+    return trigonometric(SIN if isinstance(e, sin) else COS, angle, half_turns, t)
 
 
 def _linear_argument(argument: Expr, t: Symbol) -> tuple[Angle, Any] | None:
@@ -332,7 +332,7 @@ def _wave_at_rest(sine: bool, phase: Linear) -> Polynomial:
     return {m: c * rational(sign) for m, c in ({ONE: fmpq(1)} if wave == 1 else power(wave, 1)).items()}
 
 
-def _trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes:
+def trigonometric(kind: int, angle: Angle, half_turns: Any, t: Symbol) -> Modes:
     """cos or sin of ``angle + half_turns * pi``."""
     turned, angle = algebra.orient(angle)
     result: Modes = {}
@@ -368,31 +368,6 @@ def _read_exponential(e: Expr, t: Symbol) -> Modes:
         return _read_other(e, t)
     wave = algebra.total(_read(cos(x), t), algebra.scaled(_read(sin(x), t), power(I, 1)))
     return wave if constant_part == 0 else algebra.scaled(wave, power(exp(constant_part), 1))
-
-
-# -- another origin of time --------------------------------------------------
-
-
-def shifted(modes: Modes, by: Polynomial, t: Symbol) -> Modes:
-    """The series at time ``t + by``: ``by`` joins the phases, and powers expand by the binomial theorem."""
-    if not by:
-        return modes
-    powers = [algebra.constant({ONE: fmpq(1)})]
-    step = algebra.total(_time_power(1), algebra.constant(by))
-    result: Modes = {}
-    for (kind, (frequency, phase), monomial), f in modes.items():
-        offset = multiply(algebra.as_polynomial(frequency), by)
-        half_turns = offset.pop(((generator(pi), 1),), fmpq(0))
-        for m, c in algebra.as_polynomial(phase).items():
-            add_term(offset, m, c)
-        angle = (frequency, algebra.linear(normal(offset)))
-        for r, c in enumerate(f.coeffs()):
-            if len(powers) <= r:
-                powers.append(algebra.scaled(algebra.product(powers[-1], step), {ONE: fmpq(1, r)}))
-            if c:
-                wave = _trigonometric(kind, angle, half_turns - fmpq(r, 2), t)
-                result = algebra.total(result, algebra.scaled(algebra.product(powers[r], wave), {monomial: c}))
-    return result
 
 
 def as_polynomial(modes: Modes) -> Polynomial:

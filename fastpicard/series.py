@@ -19,10 +19,11 @@ from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import evaluate, free_symbols
 from fastpicard.latex import sentence, shown
 from fastpicard.modes import Modes
-from fastpicard.reading import as_expression, as_finite, as_time, check_same_time, read, read_constant
+from fastpicard.origin import at_time
+from fastpicard.reading import as_expression, as_finite, as_time, read, read_constant
 from fastpicard.ring import ONE, rational
 from fastpicard.values import Values
-from fastpicard.writing import dyadic, write, write_at
+from fastpicard.writing import dyadic, write
 
 SHORT = 12  # terms printed before the rest is counted
 
@@ -219,9 +220,7 @@ class PoissonSeries:
 
     def __call__(self, time: Any) -> Expr:
         """The exact value at a time, a SymPy expression in the parameters."""
-        value = as_finite(time, "the time")
-        check_same_time(value, self._t)
-        return write_at(self._modes, value)
+        return at_time(self._modes, time, self._t)
 
     def evaluate(self, time: Any, values: Values | None = None, digits: int | None = None) -> Any:
         """The value at a time as a number: float64, or an mpf with ``digits`` correct digits.

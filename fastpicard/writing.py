@@ -162,21 +162,6 @@ def dyadic(e: Expr) -> Expr:
     return e.xreplace({x: to_sympy_number(rational(x)) for x in e.atoms(sympy.Float) if x.is_finite})
 
 
-def write_at(modes: Modes, time: Expr) -> Expr:
-    """The series with ``time`` put in place of ``t``, terms evaluated by SymPy one by one; a float is dyadic."""
-    time = dyadic(time)
-    terms = []
-    for (kind, angle, monomial), f in modes.items():
-        argument = angle_expression(angle, time)
-        functions = (cos(argument), sin(argument))
-        for r, c in enumerate(f.coeffs()):
-            if c:
-                sine, sign = algebra.function_of(kind, r)
-                value = sympy.Rational(sign * int(c.p), int(c.q) * factorial(r))
-                terms.append(value * monomial_expression(monomial) * time**r * functions[sine])
-    return Add(*terms)
-
-
 def gathered(modes: Modes, t: Symbol) -> Expr:
     """The series with one coefficient for each ``t**r cos`` and ``t**r sin``."""
     collected: dict[Any, Polynomial] = {}

@@ -290,6 +290,27 @@ def test_iterates_from_another_time_start_there_and_obey_the_law(P, x0, origin, 
     assert all(PoissonSeries(now[i, 0](origin), t) == x0[i] for i in range(2))
 
 
+@pytest.mark.parametrize("origin", [t0, t0 + 1, 1 + sqrt(2), pi / 3 + 1 / (a + 1), sqrt(t0) + pi * c], ids=str)
+@pytest.mark.parametrize(
+    "P",
+    [[[0, cos((1 + c) * t)], [sin((a - c) * t), cos(t) * sin(c * t)]],
+     [[cos(sqrt(2) * t) * cos(t), t], [cos(t + a), sin((1 + sqrt(3)) * t)]],
+     [[0, 1], [-a - b * cos(t), -c]]],
+    ids=["sums of symbols", "sums of roots", "one unit"])
+def test_at_the_origin_of_time_the_iterate_is_identically_the_initial_value(P, origin):
+    """Sums in frequencies and times are multiplied out before they meet."""
+    assert FundamentalMatrix(P, t, 3, origin)(origin) == sympy.eye(2)
+
+
+def test_values_at_sums_are_expanded():
+    """As all that is written is, so that they meet others."""
+    f = PoissonSeries(t**3 + t * cos((a - b) * t), t)
+
+    assert f(t0 - 1) - (t0 - 1) ** 3 - (t0 - 1) * cos((a - b) * (t0 - 1)) != 0
+    assert f(t0 - 1) == sympy.expand((t0 - 1) ** 3 + (t0 - 1) * cos((a - b) * (t0 - 1)))
+    assert f(2 * t + 1).subs(t, 0) == 1 + cos(a - b)
+
+
 @given(matrices(2, rates=st.just(S.Zero)), st.integers(0, 4))
 def test_autonomous_systems_know_only_the_time_since_the_start(P, n):
     """Phi_n(t; t0) = Phi_n(t - t0) for constant P."""
