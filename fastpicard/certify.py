@@ -232,7 +232,7 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     chart = read_chart(F, x, y, fixed, modes)
     refuse_phases(chart.F)
     rule = criterion(chart.F)
-    boxes, done = _everywhere(chart) if rule.everywhere else _by_convexity(chart)
+    boxes, done = _everywhere(chart, rule.everywhere) if rule.everywhere else _by_convexity(chart)
     state = Halving(chart, rule, start, undecided, progress, done)
     order, error = 0, 0.0
     if len(boxes):
@@ -274,11 +274,12 @@ def _first_rectangles(chart: Charted) -> Rectangles:
     return grid(chart.axes, (first.edges(START), second.edges(START)))
 
 
-def _everywhere(chart: Charted) -> tuple[Rectangles, list[tuple[Array, Array]]]:
-    """No rectangles that are left: all are stable."""
+def _everywhere(chart: Charted, verdict: int) -> tuple[Rectangles, list[tuple[Array, Array]]]:
+    """No rectangles that are left: all have this verdict."""
     np = numpy()
     boxes = _first_rectangles(chart)
-    return boxes.at(slice(0, 0)), [(cells(chart.axes, boxes.lower, boxes.upper), np.ones(len(boxes), dtype=np.int8))]
+    return boxes.at(slice(0, 0)), [(cells(chart.axes, boxes.lower, boxes.upper),
+                                    np.full(len(boxes), verdict, dtype=np.int8))]
 
 
 def _by_convexity(chart: Charted) -> tuple[Rectangles, list[tuple[Array, Array]]]:

@@ -147,8 +147,8 @@ def _sample(problem: Charted, xs: Array, ys: Array) -> Array:
     trace, margin, error = best
     verdict = np.where(abs(margin) <= error, 0, np.sign(margin))
     verdict = np.where(np.isfinite(margin) & np.isfinite(error), verdict, 0)
-    if known.bounded:
-        verdict = np.where(np.isfinite(margin), 1.0, 0.0)
+    if known.bounded or known.unbounded:
+        verdict = np.where(np.isfinite(margin), 1.0 if known.bounded else -1.0, 0.0)
     open_ = np.flatnonzero(verdict == 0)
     corner = np.stack([axis.inner(z[open_]) for axis, z in zip(problem.axes, grid, strict=True)])
     convex_there = np.logical_or.reduce([convex(problem, m, Rectangles(corner, corner)) for m in problem.members])

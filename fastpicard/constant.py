@@ -14,11 +14,11 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
+from fastpicard.coefficients import coefficients
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS, NO_ANGLE
 from fastpicard.precision import working
 from fastpicard.stability import Verdict
-from fastpicard.structure import coefficients
 
 _OPPOSITE = fmpq_poly([0, -1])
 

@@ -12,7 +12,8 @@ all multipliers simple on the circle.  If a principal minor is negative, some rh
 ``p(2)`` and ``(-1)**N p(-2)`` are products of ``2 - rho`` and ``2 + rho``: negative, and some rho is outside.
 Of an odd number of multipliers one is 1, and is left out; where no rho is 2, it is simple.
 
-**A positive definite quadratic form that is constant along all solutions**: stable everywhere.
+**What the equation says by itself** (module ``structure``): where a positive definite quadratic form is constant along
+all solutions, all is stable; where a coordinate grows in proportion to time, unstable.
 
 **Coinciding multipliers** of one signature do no harm: with ``W`` from the Hamiltonian structure the form
 ``W (M - 1/M)`` is invariant; definite, it proves stability.
@@ -52,7 +53,7 @@ class Criterion:
     entries : exact constants, row by row
     functions : from the entries as models, shape (rows, rows), to a list of models
     verdicts : from signs, shape (functions, m), to 1, -1 or 0, shape (m,)
-    everywhere : bool               whether all is stable by the structure alone
+    everywhere : 1, -1 or 0         the verdict on all by the structure alone, if it has one
     """
 
     name: str
@@ -60,14 +61,15 @@ class Criterion:
     entries: Callable[[FloquetMatrix], list[list[Modes]]]
     functions: Callable[[Rows], list[Models]]
     verdicts: Callable[[Array], Array]
-    everywhere: bool = False
+    everywhere: int = 0
 
 
 def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
     size, signs, known = F.shape[0], reversal(F.P), known_structure(F)
-    if known.bounded:
-        return Criterion(known.bounded, False, _whole, lambda rows: [], _all_positive, everywhere=True)
+    if known.bounded or known.unbounded:
+        return Criterion(known.bounded or known.unbounded, False, _whole, lambda rows: [], _all_positive,
+                         everywhere=1 if known.bounded else -1)
     balanced = signs is not None and 2 * signs.count(1) == size
     if known.paired and balanced and size == 2:
         return Criterion("half-period factors of trace -+ 2", True, half_period, _flat, _by_factors)

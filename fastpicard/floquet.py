@@ -450,6 +450,8 @@ class FloquetMatrix(AsMatrix):
         known = self._structure(exact)
         if known.bounded:
             return Verdict.STABLE.because(known.bounded)
+        if known.unbounded:
+            return Verdict.UNSTABLE.because(known.unbounded)
         for digits in (10, 30, 100):
             matrix = self._true(exact, digits, strict=False)
             with working(dps_to_prec(digits) + 64):

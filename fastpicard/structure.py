@@ -7,7 +7,7 @@ With every multiplier ``lambda`` also ``1/lambda`` is one
 - if a constant, regular, symmetric ``S`` makes ``S P(t)`` antisymmetric, for then ``Phi(T)' S Phi(T) = S``.  If it is
   positive definite, as for the precession of a spin, ``x' S x`` keeps all solutions on ellipsoids;
 - if time reverses, ``s P(-t) s = -P(t)`` with signs ``s`` (modules ``harmonics`` and ``halfway``);
-- for two by two, if ``det Phi(T) = exp(integral of trace P) = 1`` (Liouville).
+- for one by one and two by two, if ``det Phi(T) = exp(integral of trace P) = 1`` (Liouville).
 
 Of an odd number of multipliers in pairs one is 1, since ``det Phi(T) > 0``.
 """
@@ -21,9 +21,10 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from fastpicard.coefficients import coefficients, kernel
+from fastpicard.drift import drift
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import Linear
-from fastpicard.ring import expression_of
 
 
 @dataclass(frozen=True)
@@ -35,11 +36,13 @@ class Structure:
     paired : bool       whether with every multiplier ``lambda`` also ``1/lambda`` is one; of an odd number one is 1
     forms : list of antisymmetric fmpq_mat ``W`` with ``Phi(T)' W Phi(T) = W``: a regular one, then a basis; or empty
     bounded : str       why all solutions are bounded; empty where that is not known
+    unbounded : str     why some solution is not; the same
     """
 
     paired: bool
     forms: list[Any]
     bounded: str
+    unbounded: str = ""
 
 
 def structure(P: SeriesMatrix, values: Mapping[Any, Any], reverses: bool, moves: Callable[[Linear], bool]) -> Structure:
@@ -52,12 +55,15 @@ def structure(P: SeriesMatrix, values: Mapping[Any, Any], reverses: bool, moves:
     forms = _with_a_regular_one(_invariant_forms(matrices, P.shape[0], -1))
     symmetric = _with_a_regular_one(_invariant_forms(matrices, P.shape[0], 1))
     paired = bool(forms or symmetric) or reverses or _keeps_area(P, values, moves)
-    bounded = ""
-    if symmetric and _holds_definite(symmetric[1:]):
+    bounded, drifts = "", drift(P, values, moves)
+    if drifts > 0:
+        bounded = "the rates of all coordinates are waves times constants of motion"
+    elif symmetric and _holds_definite(symmetric[1:]):
         bounded = "a positive definite quadratic form is constant along all solutions, so they stay on ellipsoids"
     elif paired and P.shape[0] == 1:
         bounded = "the only multiplier is 1"
-    return Structure(paired, forms, bounded)
+    unbounded = "a coordinate grows in proportion to time: its mean rate is a constant of motion" if drifts < 0 else ""
+    return Structure(paired, forms, bounded, unbounded)
 
 
 def _invariant_forms(matrices: list[dict[tuple[int, int], Any]], size: int, sign: int) -> list[Any]:
@@ -66,8 +72,8 @@ def _invariant_forms(matrices: list[dict[tuple[int, int], Any]], size: int, sign
     Antisymmetric for sign -1: ``X P`` is symmetric, ``P`` Hamiltonian.  Symmetric for sign 1: ``x' X x`` is constant.
     """
     places = [(i, j) for i in range(size) for j in range(i + (sign < 0), size)]
-    kernel = _kernel([_condition(A, size, places, sign) for A in matrices], len(places))
-    return [_form(vector, size, places, sign) for vector in kernel]
+    vectors = kernel([_condition(A, size, places, sign) for A in matrices], len(places))
+    return [_form(vector, size, places, sign) for vector in vectors]
 
 
 def _with_a_regular_one(basis: list[Any]) -> list[Any]:
@@ -107,9 +113,9 @@ def _trace(X: Any) -> Any:
 
 
 def _keeps_area(P: SeriesMatrix, values: Mapping[Any, Any], moves: Callable[[Linear], bool]) -> bool:
-    """Whether ``P`` is 2 x 2 and the mean of its trace vanishes, so that the determinant of ``Phi(T)`` is 1."""
+    """Whether ``P`` is 2 x 2 or smaller and its trace has no mean, so that the determinant of ``Phi(T)`` is 1."""
     still = [A for (_, (q, _), _), A in coefficients(P, values).items() if not q or not moves(q)]
-    return P.shape == (2, 2) and all(A.get((0, 0), fmpq(0)) + A.get((1, 1), fmpq(0)) == 0 for A in still)
+    return P.shape[0] <= 2 and all(A.get((0, 0), fmpq(0)) + A.get((1, 1), fmpq(0)) == 0 for A in still)
 
 
 def _form(vector: list[Any], size: int, places: list[tuple[int, int]], sign: int) -> Any:
@@ -118,24 +124,6 @@ def _form(vector: list[Any], size: int, places: list[tuple[int, int]], sign: int
         form[j, i] = sign * x
         form[i, j] = x
     return form
-
-
-def coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> dict[Any, dict[tuple[int, int], Any]]:
-    """The constant matrices that multiply independent functions in ``P``, by (kind, angle, monomial) of these."""
-    found: dict[Any, dict[tuple[int, int], Any]] = {}
-    for i, row in enumerate(P.rows):
-        for j, modes in enumerate(row):
-            for (kind, angle, monomial), f in modes.items():
-                value, rest = f[0], []
-                for g, e in monomial:
-                    given = values.get(expression_of(g))
-                    if isinstance(given, fmpq) and e == int(e) and (given != 0 or e > 0):
-                        value *= given ** int(e)
-                    else:
-                        rest.append((g, e))
-                matrix = found.setdefault((kind, angle, tuple(rest)), {})
-                matrix[i, j] = matrix.get((i, j), fmpq(0)) + value
-    return found
 
 
 def _condition(A: dict[tuple[int, int], Any], size: int, places: list[tuple[int, int]], sign: int) -> list[list[Any]]:
@@ -149,19 +137,3 @@ def _condition(A: dict[tuple[int, int], Any], size: int, places: list[tuple[int,
                 turned = (i > k) + (i > j)
                 rows[target][number[source]] += value * sign**turned
     return list(rows.values())
-
-
-def _kernel(blocks: list[list[list[Any]]], unknowns: int) -> list[list[Any]]:
-    rows = [row for block in blocks for row in block if any(row)]
-    if not rows:
-        return [[fmpq(int(i == j)) for i in range(unknowns)] for j in range(unknowns)]
-    reduced, rank = fmpq_mat(rows).rref()
-    pivots = [next(k for k in range(unknowns) if reduced[r, k] != 0) for r in range(rank)]
-    basis = []
-    for free in sorted(set(range(unknowns)) - set(pivots)):
-        vector = [fmpq(0)] * unknowns
-        vector[free] = fmpq(1)
-        for r, pivot in enumerate(pivots):
-            vector[pivot] = -reduced[r, free]
-        basis.append(vector)
-    return basis

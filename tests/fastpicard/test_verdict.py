@@ -28,6 +28,7 @@ from fastpicard.stability import judge, schur_cohn
 from fastpicard.structure import Structure, is_definite
 from lagrangian import Rod, Scene, Support, euler_lagrange, linearize
 from tests.fastpicard.test_reference_cases import cases, numbers, read, system
+from tests.oracles import true_fundamental_matrix
 
 t, a, b, c, h, v = map(Symbol, "tabchv")
 MATHIEU = FloquetMatrix(Matrix([[0, 1], [-a - b * cos(t), 0]]), t, 0)
@@ -235,6 +236,59 @@ def test_an_indefinite_form_bounds_nothing():
     assert not known_structure(FloquetMatrix(boost, t, 0)).bounded
 
 
+# -- what drifts -------------------------------------------------------------------
+
+FREE = a * (2 + cos(t)) + b * sin(3 * t)
+DRIFTING = {
+    "two masses": Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-FREE, FREE, 0, 0], [FREE / 3, -FREE / 3, 0, 0]]),
+    "driven by a constant": Matrix([[0, a * sin(t) + 2], [0, 0]]),
+    "in oblique axes": Matrix([[1, 1], [1, 2]]) * Matrix([[0, b * cos(t) - 1], [0, 0]]) * Matrix([[2, -1], [-1, 1]]),
+}
+
+
+@pytest.mark.parametrize("name", DRIFTING)
+def test_what_is_free_to_move_drifts_away(name):
+    """Whatever the values: in verdicts and on charts; powers of the true matrix grow in proportion."""
+    F = FloquetMatrix(DRIFTING[name], t, 6)
+    for values in ({a: 0, b: 0}, {a: Rational(1, 3), b: Rational(2, 7)}, {a: arb(1, 0.1), b: sqrt(2)}):
+        assert F.verdict(values) == Verdict.UNSTABLE
+    M = true_fundamental_matrix(DRIFTING[name].subs({a: Rational(1, 99), b: 0}), t, 0, 2 * pi, 25)
+    first, second = (mpmath.mnorm(M**k, mpmath.inf) for k in (1000, 2000))
+
+    assert 1.5 < second / first < 2.5
+    assert certify(F, (a, 0, 1), (b, 0, 1)).fraction(Verdict.UNSTABLE) == 1
+    assert (chart(F, (a, 0, 1), (b, 0, 1), points=(5, 4))["verdict"] == -1).all()
+
+
+@pytest.mark.parametrize("P", [
+    [[0, a * sin(t) - b * cos(2 * t + 1)], [0, 0]],
+    [[a * cos(t)]],
+    [[0, 0, cos(t)], [0, 0, b * sin(t)], [0, 0, 0]],
+    [[0, 0], [0, 0]],
+], ids=str)
+def test_waves_of_constants_of_motion_stay_bounded(P):
+    """As integrals of waves do."""
+    F = FloquetMatrix(Matrix(P), t, 2)
+
+    assert F.verdict({a: 2, b: Rational(1, 3)}) == F.verdict({a: arb(1, 0.1), b: sqrt(2)}) == Verdict.STABLE
+
+
+k, m = Symbol("k", integer=True), Symbol("m", integer=True)
+
+
+@pytest.mark.parametrize("P, values, expected", [
+    ([[0, cos(k * t) * cos(m * t)], [0, 0]], {k: 3, m: 2}, Verdict.STABLE),
+    ([[0, cos(k * t) * cos(m * t)], [0, 0]], {k: 3, m: 3}, Verdict.UNDECIDED),
+    ([[0, cos(a) + cos(t)], [0, 0]], {a: 1}, Verdict.UNDECIDED),
+    ([[0, a + cos(t)], [0, 0]], {a: (-1, 1)}, Verdict.UNDECIDED),
+    ([[0, a + cos(t)], [0, 0]], {a: 0}, Verdict.STABLE),
+    ([[0, a + cos(t)], [0, 0]], {a: Rational(1, 10**9)}, Verdict.UNSTABLE),
+], ids=str)
+def test_a_mean_counts_only_where_it_is_known(P, values, expected):
+    """Not that of waves that may stand still, of functions of parameters, and of boxes."""
+    assert FloquetMatrix(Matrix(P), t, 2).verdict(values) == expected
+
+
 SQUARES = FloquetMatrix(Matrix([[0, 1, 0], [0, 0, 1], [2 * b * sin(t), -4 * a - 4 * b * cos(t), 0]]), t, 0)
 
 
@@ -266,7 +320,6 @@ def test_a_chart_of_odd_size_is_that_of_the_equation_it_is_made_of():
 
 # -- resonances ------------------------------------------------------------------
 
-k, m = Symbol("k", integer=True), Symbol("m", integer=True)
 WAVES = FloquetMatrix(Matrix([[a * cos(k * t) * cos(m * t), 1], [-b, 0]]), t, 0)
 
 
