@@ -7,7 +7,7 @@ Ordinary Differential Equations with Periodic Coefficients by Exact Picard
 Iterates", The Mathematica Journal 10(1), 2006).
 
 The order in which the files are best read, which is the order in which they may import one another, stands in
-``setup.cfg`` and is held by a test of the imports.
+``setup.cfg``, and the import linter holds it.
 """
 
 from fastpicard.boundaries import Boundary, Root, boundaries

@@ -80,7 +80,8 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
 
     Notes
     -----
-    A million points of one rod take a second.  What is proved for whole rectangles is :func:`certify`.
+    A million points of one rod take a second or less (``benchmarks/charts.py``).  What is proved for whole
+    rectangles is :func:`certify`.
 
     Examples
     --------

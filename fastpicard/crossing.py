@@ -128,7 +128,7 @@ def _radius(part: Boundary, values: dict[Any, Any], names: tuple[Symbol, Symbol]
     radius = min([arb(1), *((sizes[s] / 2).mid() for s, e in powers if s in names and (e < 0 or e != int(e)))])
     if not radius > 0:
         raise BadInputError(f"P must be smooth where curves cross, but it has a pole or a root at "
-                            f"{dict(zip(names, map(str, sizes.values()), strict=True))}.  Start elsewhere.")
+                            f"{ {s: str(values[s]) for s in names} }.  Start elsewhere.")
     return radius
 
 

@@ -45,6 +45,8 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
     BadInputError, BadTypeError
         for an order that is no integer from 0 up, ``x0``, ``t0`` that contain ``t`` or text, and where nan or an
         infinity occurs.
+    ShapeError
+        if ``f`` returns another number of components.
 
     Examples
     --------
@@ -64,8 +66,8 @@ def picard(f: Callable[[Any, Matrix], Any], t: Symbol, x0: Any, n: int, t0: Any 
         s = sympy.Dummy(f"s{k + 1}")  # of every integration its own, should one stay in another
         slope = _slope(f(t, x), t)
         if slope.shape != x.shape:
-            raise BadInputError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "
-                                "Return one component for each unknown.")
+            raise ShapeError(f"f(t, x) must have the shape {x.shape} of x0, but its shape is {slope.shape}.  "
+                             "Return one component for each unknown.")
         x = Matrix([_proper(start[i] + _integral(slope[i].subs(t, s), s, t0, t), f"the integral of component {i} of "
                             f"f(t, x) from {t0} to {t}") for i in range(len(start))])
     return ImmutableMatrix(x)

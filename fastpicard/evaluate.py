@@ -142,7 +142,7 @@ class Point:
             e = expression_of(number)
             if e is sympy.I:
                 raise BadInputError("the value must be real, but the series contains I.  Evaluate its real and "
-                                    "imaginary parts one by one.")
+                                    "imaginary parts one by one; write a complex P as a real one of twice the size.")
             self.generators[number] = expression_ball(e, self.values)
         exact = sympy.Rational(exponent)
         return _power(self.generators[number], arb(rational(exact)), exact)
@@ -252,9 +252,9 @@ def _settle(x: Any, needed: int) -> Any:
         return arb(0)
     if not x.is_finite():
         raise BadInputError(f"a value must be finite, but it is {x} here: a pole of the coefficients, or a resonance "
-                            "of frequencies.  Keep away from there.")
+                            "of frequencies.  Keep away from there, or put these frequencies into P as numbers.")
     raise BadInputError(f"the digits asked for cannot be had: the value lies in {x}.  Give exact parameters instead of "
-                        "balls with a radius.")
+                        "balls with a radius, or ask for fewer digits.")
 
 
 def to_number(x: Any, digits: int | None) -> Any:

@@ -229,12 +229,18 @@ class FloquetMatrix(AsMatrix):
         MissingParameterError
             if a parameter has no value.
         BadInputError
-            at a resonance: where a frequency with a Symbol in it vanishes that the iterate was divided by.
+            at a resonance: where a frequency with a Symbol in it vanishes that the iterate was divided by; with a ball
+            too wide for the digits, which are 53 bits if none are given.
+
+        Notes
+        -----
+        The first call computes the iterate in all Symbols, once for all points.  For one point only, put the numbers
+        into ``P`` first: every Symbol less takes the power of the order by one down that time and memory grow with.
         """
         return number_matrix(self.collapsed.at(values, digits), self.shape, check_digits(digits))
 
     def trace_at(self, values: Values | None = None, digits: int | None = None) -> Any:
-        """The trace of the n-th iterate, float or mpf, every digit asked for correct."""
+        """The trace of the n-th iterate, float or mpf, every digit asked for correct; raises as :meth:`evaluate`."""
         return self.collapsed_trace.at(values, digits)[0]
 
     # -- the truth -----------------------------------------------------------
@@ -302,6 +308,13 @@ class FloquetMatrix(AsMatrix):
         -------
         float, rounded up: a bound of the largest row sum of ``|Phi - Phi_n|``, hence of every entry;
         ``inf`` beyond the range of floats.
+
+        Raises
+        ------
+        MissingParameterError
+            if a parameter has no value.
+        BadInputError
+            if ``P`` or the period is not finite there, or the period not positive.
 
         Notes
         -----
@@ -381,7 +394,10 @@ class FloquetMatrix(AsMatrix):
         Raises
         ------
         BadInputError
-            if parameters are balls too wide for the digits.
+            if parameters are balls too wide for the digits, or too many multipliers coincide for them; as
+            :meth:`remainder`.
+        MissingParameterError
+            if a parameter has no value.
         """
         wanted = check_digits(digits)
         found = self.multiplier_enclosures(values, 17 if wanted is None else wanted)
@@ -392,7 +408,7 @@ class FloquetMatrix(AsMatrix):
 
         Parameters and order as :meth:`multipliers`; ``digits`` counts decimals relative to the multiplier's modulus.
         Of a multiplier that cannot be told from a double one the ball contains both; its digits cost twice
-        the precision.
+        the precision.  Raises as :meth:`multipliers`.
         """
         wanted = count_of_digits(digits)
         exact = self.numbers(values)
@@ -423,13 +439,15 @@ class FloquetMatrix(AsMatrix):
             with the sentence that proves it as ``.reason``.  Undecided means that the trace, or what else is asked,
             is within some ``1e-100`` of the end of stability (in parameters that is ``1e-50`` where two boundaries
             touch, and ``10**(-100/k)`` where k pairs of multipliers nearly coincide), or a box that a boundary may
-            cross.  Where ``P`` is constant with rational entries it is never
-            undecided.
+            cross, or that is too wide for one enclosure, some 1e-3: :func:`fastpicard.certify` divides boxes.  Where
+            ``P`` is constant with rational entries it is never undecided.
 
         Raises
         ------
         MissingParameterError
             if a parameter has no value.
+        BadInputError
+            if ``P`` or the period is not finite there, or the period not positive.
 
         Examples
         --------

@@ -75,8 +75,9 @@ def mathieu_s(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
 def mathieu_exponent(a: Any, q: Any, digits: int = 15) -> Any:
     """The characteristic exponent ``nu``, ``cos(pi nu) = w_I(pi; a, q)``: an mpc with all ``digits`` right.
 
-    Real (stable) or with real part 0 or 1 (unstable); arguments and errors as :func:`mathieu_c`.  At ``q = 0`` it is
-    ``sqrt(a)`` less an even integer, on the boundaries too.
+    Of all that have this cosine the one with real part in [0, 1] and no negative imaginary part: real (stable) or with
+    real part 0 or 1 (unstable).  Arguments and errors as :func:`mathieu_c`.  At ``q = 0`` it is the distance of
+    ``sqrt(a)`` from the nearest even integer, on the boundaries too.
 
     Raises
     ------

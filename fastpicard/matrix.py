@@ -265,7 +265,7 @@ def read_matrix(P: Any, t: Symbol) -> SeriesMatrix:
 
 def _series(rows: Any, t: Symbol) -> Rows:
     """Entries in the engine's form, read where they are expressions."""
-    if isinstance(rows, tuple) and rows and all(isinstance(modes, Mapping) for row in rows for modes in row):
+    if isinstance(rows, tuple) and rows and all(row and all(isinstance(f, Mapping) for f in row) for row in rows):
         return rows
     entries = _entries(rows, "a matrix of series")
     lengths = [len(row) for row in entries]

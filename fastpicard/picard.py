@@ -1,10 +1,6 @@
-r"""Picard iteration: any equation by the definition, linear periodic ones exactly and fast.
+r"""Picard iteration of ``x' = P(t) x``, exactly and fast; of any other equation in :mod:`fastpicard.definition`.
 
-The iterates of ``x' = f(t, x)``, ``x(t0) = x0`` are ([Neves] (2))
-
-    x_0 = x0,    x_{n+1}(t) = x0 + integral from t0 to t of f(s, x_n(s)) ds.
-
-For ``f = P(t) x`` the operator is affine, so ``x_n`` is the sum of increments,
+The operator is affine, so the iterate is the sum of increments,
 
     x_n = I_0 + ... + I_n,    I_0 = x0,    I_{k+1}(t) = integral from t0 to t of P I_k,
 

@@ -26,6 +26,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from functools import cache, lru_cache
 from math import floor, gcd, lcm
+from threading import Lock
 from types import MappingProxyType
 from typing import Any, TypeVar, cast
 
@@ -51,6 +52,7 @@ _related: set[int] = set()  # the generators with a relation: primes under a roo
 _cosines: dict[int, tuple[Fraction, Fraction]] = {}  # (x, e) of the generators whose power e is cos(pi x)
 _sums: dict[int, Polynomial] = {}  # what the generators are that are polynomials in others
 _UNIT = fmpq(1)
+_LOCK = Lock()
 _TINY, _LARGE = 1e-12, 1e12
 _LARGEST_DENOMINATOR = 10_000
 
@@ -63,18 +65,25 @@ def read_only(terms: Terms) -> Terms:
 def generator(expression: Expr) -> int:
     """The number of a generator; the same expression has the same number for good.  Raises NotInFamilyError."""
     number = _numbers.get(expression)
-    if number is None:
-        if expression.has(MatrixElement):
-            raise NotInFamilyError(f"{expression} holds an entry of a matrix without entries, which SymPy cannot put "
-                                   "numbers into.  Use a Symbol in its place.")
-        number = _numbers[expression] = len(_expressions)
-        _expressions.append(expression)
-        if expression is sympy.I or expression.is_Integer:
-            _related.add(number)
-        cosine = cosines.named_cosine(expression)
-        if cosine is not None:
-            _cosines[number] = cosine
-    return number
+    return _numbered(expression) if number is None else number
+
+
+def _numbered(expression: Expr) -> int:
+    """A new number, which other threads see when all that belongs to it is known."""
+    if expression.has(MatrixElement):
+        raise NotInFamilyError(f"{expression} holds an entry of a matrix without entries, which SymPy cannot put "
+                               "numbers into.  Use a Symbol in its place.")
+    cosine = cosines.named_cosine(expression)
+    with _LOCK:
+        if expression not in _numbers:
+            number = len(_expressions)
+            _expressions.append(expression)
+            if expression is sympy.I or expression.is_Integer:
+                _related.add(number)
+            if cosine is not None:
+                _cosines[number] = cosine
+            _numbers[expression] = number
+        return _numbers[expression]
 
 
 def expression_of(number: int) -> Expr:

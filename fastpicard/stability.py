@@ -28,7 +28,7 @@ from typing import Any, ClassVar
 
 from flint import arb, arb_mat
 
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, BadTypeError
 from fastpicard.evaluate import numpy
 from fastpicard.latex import sentence, shown
 from fastpicard.spectrum import Disc, in_rho, root_discs
@@ -68,8 +68,8 @@ class Verdict:
         return {"STABLE": 1, "UNSTABLE": -1}.get(self.name, 0)
 
     def __bool__(self) -> bool:
-        raise TypeError(f"a verdict has three outcomes and no truth value; this one is {self.name}.  "
-                        "Compare it: verdict == Verdict.STABLE.")
+        raise BadTypeError(f"a verdict has three outcomes and no truth value; this one is {self.name}.  "
+                           "Compare it: verdict == Verdict.STABLE.")
 
     def __repr__(self) -> str:
         return f"Verdict.{self.name}"

@@ -58,7 +58,7 @@ class Tube:
     label, parity : str         as of :class:`Boundary`
     lo, hi : float              the interval of b
     center, half : arb          its middle and half length
-    coefficients : list of arb, exact
+    coefficients : tuple of arb, exact
     radius : float              proved
     """
 
@@ -111,6 +111,7 @@ class Tubes:
 
     Attributes
     ----------
+    x, y : (Symbol, float, float)       a and b with their intervals
     pieces : tuple of Tube
     radius : float      the largest
     area : float        an upper bound of the part of the rectangle inside tubes
@@ -190,7 +191,8 @@ def tubes(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     rule = criterion(chart.F)
     if chart.F.shape != (2, 2) or not rule.half or first.power < 0 or second.power < 0:
         raise BadInputError("tubes are drawn of y'' + (a + q(t; b)) y = 0 with q even in t and no negative powers of "
-                            "the parameters, and this equation is not of that kind.  Use certify.")
+                            "the parameters, and this equation is not of that kind.  Count time from where q is even, "
+                            "or use certify.")
     slope = chart.F.P.as_matrix().diff(first.symbol)
     if slope != Matrix([[0, 0], [-1, 0]]):
         name = first.symbol

@@ -48,8 +48,10 @@ def exact_number(value: Any, what: str) -> Any:
     if isinstance(value, Decimal):
         return fmpq(*map(int, _finite(value, value.is_finite(), what).as_integer_ratio()))
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or isinstance(value, type(mpmath.iv.one)):
-        raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  "
-                           "Give an int, Fraction, SymPy number, mpf, float or arb; text is never evaluated.")
+        remedy = "Give an int, Fraction, SymPy number, mpf, float or arb; text is never evaluated."
+        if isinstance(value, list):
+            remedy = "Functions that lambdify makes take arrays, others one number at a time."
+        raise BadTypeError(f"{what} must be a real number, but it is {value!r}, a {type(value).__name__}.  {remedy}")
     if isinstance(value, numbers.Rational):  # of any size, floats are not
         return fmpq(int(value.numerator), int(value.denominator))
     return fmpq(*map(int, _finite(value, math.isfinite(value), what).as_integer_ratio()))

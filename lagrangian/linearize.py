@@ -82,6 +82,9 @@ class FirstOrderSystem:
     def __iter__(self) -> Iterator[Any]:
         return iter((self.P, self.tau, self.period))
 
+    def __getitem__(self, index: int) -> Any:
+        return (self.P, self.tau, self.period)[index]
+
     def __repr__(self) -> str:
         where = "".join(f", {symbol} = {meaning}" for symbol, meaning in self.where)
         return f"FirstOrderSystem(P of shape {self.P.shape}, tau={self.tau}, period={self.period}{where})"

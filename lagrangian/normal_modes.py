@@ -27,6 +27,7 @@ from sympy import (
     Function,
     Integer,
     Poly,
+    Symbol,
     cancel,
     cos,
     expand,
@@ -106,8 +107,9 @@ class NormalModes:
                  for k, part in enumerate(pair) if expand(part) != 0}
         other = [(q, "cos" if k == 0 else "sin") for q, k in found if (q, k) not in ((0, 0), (1, 0))]
         if other:
+            tau = Symbol("tau")
             raise NotPeriodicError(
-                f"Mathieu's equation has the one wave cos tau, and this drive has {other[0][1]}({other[0][0]}*tau) "
+                f"Mathieu's equation has the one wave cos tau, and this drive has {other[0][1]}({other[0][0] * tau}) "
                 f"with tau = {omega0}*{self.scene.t}: choose omega0 and the origin of time so that the drive is "
                 f"epsilon*cos(omega0*{self.scene.t}), or use first_order."
             )

@@ -131,6 +131,8 @@ def _exact(value: Any, name: str) -> Any:
         return Integer(int(value))
     if isinstance(value, (flint.fmpz, flint.fmpq)):
         return Rational(int(value.numerator), int(value.denominator))
+    if isinstance(value, flint.arb):
+        return _of_ball(value, name)
     if isinstance(value, AnyRational):
         return Rational(int(value.numerator), int(value.denominator))
     binary = isinstance(value, AnyMpf) and not isinstance(value, mpmath.mp.constant)
@@ -142,6 +144,15 @@ def _exact(value: Any, name: str) -> Any:
         f"{name} is {value!r} of type {type(value).__name__}, not a scalar: give a real number or a commutative "
         f"SymPy expression."
     )
+
+
+def _of_ball(value: Any, name: str) -> Any:
+    if not value.is_finite():
+        raise QuantityError(f"{name} is {value}, which is not finite: give a finite number.")
+    if not value.is_exact():
+        raise QuantityError(f"{name} is the ball {value}, and rods and chains are made of numbers: give its middle.")
+    mantissa, exponent = value.man_exp()
+    return Integer(int(mantissa)) * Integer(2) ** int(exponent)
 
 
 def _ratio(value: Any) -> tuple[int, int]:

@@ -198,8 +198,8 @@ def accelerate_rods(rods: Any, z: Any, tau: Any, s: Any, c: Any, ax: Any, ay: An
 def accelerate_bobs(bobs: Any, z: Any, s: Any, c: Any, ax: Any, ay: Any, work: Any, doubt: Any, out: Any) -> None:
     """Write ``theta''`` of point masses on massless rods to ``out``; no torques.
 
-    Shapes: bobs (n, 4), rows ``m, l, m_k/m_(k-1) (0 for k = 1), 1/m``; z, s, c, out (n,); work (n, 2); the rest
-    as for :func:`accelerate_rods`.
+    Shapes: bobs (n, 4), rows ``m, l, m_k/m_(k-1) (0 for k = 1), 1/m``; z, s, c, out (n,); work (n, 2); doubt
+    (n,) or None; the rest as for :func:`accelerate_rods`.
     """
     n = bobs.shape[0]
     a, b, d = bobs[0, 1] * z[0], ax * s[0], ay * c[0]

@@ -35,7 +35,7 @@ def total(a: Any, b: Any) -> tuple[Any, Any]:
 
 
 def joints(state: Any, s: Any, c: Any, delta: Any) -> None:
-    """Sine and cosine of every joint angle, and the angle itself, from the state (6, n): high, low, turns, ...."""
+    """Sine and cosine of every joint angle, and the angle itself, from the state (5, n), see :func:`advance`."""
     for k in range(state.shape[1]):
         if k == 0:
             d, e = state[0, 0], state[1, 0]

@@ -60,6 +60,7 @@ from fastpicard import (
     tabulate,
     tubes,
 )
+from fastpicard.matrix import SeriesMatrix
 from tests.oracles import vanishes
 
 t, a, b, x, y = sympy.symbols("t a b x y")
@@ -1209,3 +1210,19 @@ def test_components_of_f_are_expressions_in_the_time_given(f, words):
     """A second t would stay in the result as a constant, without a word."""
     with pytest.raises(BadInputError, match=words):
         picard(f, Symbol("t"), [1, 2], 2)
+
+
+def test_an_array_where_one_number_is_asked_for_is_told_of_lambdify():
+    """Values and times."""
+    F = FloquetMatrix([[0, 1], [-a - b * cos(t), 0]], t, 3)
+    for ask in (lambda x: F.evaluate({a: x, b: 1}), lambda x: F.verdict({a: x, b: 1}),
+                lambda x: FundamentalMatrix(F.P, t, 3).evaluate(x, {a: 1, b: 1})):
+        with pytest.raises(BadTypeError, match="lambdify makes take arrays"):
+            ask(np.array([0.1, 0.2]))
+
+
+def test_a_matrix_without_entries_is_none():
+    """Nested tuples as well, the form that the engine itself uses."""
+    for rows in (((),), ((), ()), [[]]):
+        with pytest.raises(ShapeError):
+            SeriesMatrix(rows, t)

@@ -6,6 +6,7 @@ from hypothesis import given, strategies as st
 from sympy import I, Rational, Symbol, cbrt, pi, root, sqrt
 
 from fastpicard import BadInputError, PoissonSeries, ring
+from tests.conftest import in_threads
 from tests.strategies import a, b, c, g, l, rationals, t
 
 atoms = st.sampled_from([a, b, 1 / a, sqrt(2), sqrt(3), sqrt(6), cbrt(4), pi, I, sqrt(a), g / l])
@@ -99,6 +100,16 @@ def test_what_is_zero_is_known_to_be_zero(zero):
     assert not of(zero)
     assert of(zero) == 0
     assert hash(of(zero) + of(1 / (a + b))) == hash(of(1 / (a + b)))
+
+
+def test_threads_that_meet_the_same_symbols_first_give_each_a_number_of_its_own():
+    """Four threads, interrupted often, and two hundred new symbols."""
+    for attempt in range(5):
+        symbols = [Symbol(f"new{attempt}_{k}") for k in range(200)]
+        found = in_threads(lambda _, of=symbols: [ring.generator(s) for s in of], range(4))
+
+        assert found[0] == found[1] == found[2] == found[3]
+        assert [ring.expression_of(k) for k in found[0]] == symbols
 
 
 def test_negative_bases_keep_their_sign():

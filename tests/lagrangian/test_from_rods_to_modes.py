@@ -32,6 +32,7 @@ def test_double_rod_has_the_articles_first_order_matrix():
     """P after Out[43] with a = -1/(7 v**2), b = h/7, and what h and v stand for."""
     system = linear([rod] * 2).first_order(omega0)
     P, tau, period = system
+    assert (system[0], system[1], system[-1]) == (P, tau, period)
     wave = -1 / (7 * v**2) + h / 7 * cos(tau)
     expected = Matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-18 * wave, 9 * wave, 0, 0], [27 * wave, -24 * wave, 0, 0]])
 

@@ -332,12 +332,17 @@ def test_neither_the_keys_of_a_mapping_nor_a_set_are_a_list(ask):
 
 
 def test_numbers_of_flint_are_numbers():
-    """Rationals and integers, as lengths and as angles."""
+    """Rationals, integers and exact balls, as lengths and as angles; balls with a radius are none."""
     third = flint.fmpq(1, 3)
-    chain = CompiledChain([1, 1], [third, flint.fmpz(2)], [0, 1], [third, 2])
+    chain = CompiledChain([1, flint.arb(1)], [third, flint.fmpz(2)], [0, 1], [third, flint.arb(2)])
 
     expected = CompiledChain([1, 1], [Rational(1, 3), 2], [0, 1], [Rational(1, 3), 2])
     assert (chain.rods == expected.rods).all()
+    assert Rod(flint.arb(3) / 4, 1, 1, 1).mass == Rational(3, 4)
+    with pytest.raises(QuantityError, match="is the ball .*give its middle"):
+        Rod(flint.arb(1) / 3, 1, 1, 1)
+    with pytest.raises(QuantityError, match="not finite"):
+        Rod(flint.arb("inf"), 1, 1, 1)
     assert (chain.acceleration(0, [third, 0], [0, 1]) == expected.acceleration(0, [Fraction(1, 3), 0], [0, 1])).all()
 
 
