@@ -36,7 +36,7 @@ from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
 from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
 from fastpicard.ring import ONE, Polynomial, multiply, read_only, symbols_of
-from fastpicard.spectrum import Multiplier, multipliers_of
+from fastpicard.spectrum import Multiplier, exponent, multipliers_of
 from fastpicard.stability import Verdict, judge
 from fastpicard.structure import Structure, structure
 from fastpicard.values import Values, check_order, exact_number
@@ -402,6 +402,27 @@ class FloquetMatrix(AsMatrix):
         wanted = check_digits(digits)
         found = self.multiplier_enclosures(values, 17 if wanted is None else wanted)
         return [to_complex(m.ball, wanted) for m in found]
+
+    def exponents(self, values: Values | None = None, digits: int | None = None) -> list[Any]:
+        """The Floquet exponents ``mu = log(lambda)/T`` of the true equation, complex or mpc; 1/unit of time.
+
+        Solutions are ``exp(mu t)`` times functions of period T.  In the order of :meth:`multipliers`, fastest growth
+        first.  The real part is a Lyapunov exponent, 0 where the multiplier is proved to be on the unit circle; the
+        imaginary part, a frequency or quasienergy, is that in ``[-pi/T, pi/T]``: multiples of ``2 pi/T`` are free.
+        Right to ``10**-digits / T``, 15 digits where none are given.  Raises as :meth:`multipliers`.
+
+        Examples
+        --------
+        >>> from sympy import Matrix, cos
+        >>> from sympy.abc import a, b, t
+        >>> F = FloquetMatrix(Matrix([[0, 1], [-a - b*cos(t), 0]]), t, 0)
+        >>> [round(mu.real, 12) for mu in F.exponents({a: 0.25, b: 0.2})]
+        [0.098204446059, -0.098204446059]
+        """
+        wanted, exact = check_digits(digits), self.numbers(values)
+        found = self.multiplier_enclosures(values, 17 if wanted is None else wanted)
+        with working(dps_to_prec(wanted or 17) + 64):
+            return [to_complex(exponent(m, self.at(exact)[1]), wanted) for m in found]
 
     def multiplier_enclosures(self, values: Values | None = None, digits: int = 15) -> list[Multiplier]:
         """The multipliers of the true Floquet matrix in balls (``acb``), each with what is proved of its modulus.

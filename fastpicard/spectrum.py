@@ -190,6 +190,15 @@ def _multiplier(parts: Any, on_unit_circle: bool | None) -> Multiplier:
     return Multiplier(acb(*unpacked(parts)), on_unit_circle)
 
 
+def exponent(multiplier: Multiplier, period: Any) -> Any:
+    """``log(lambda)/T`` in a ball, the imaginary part in ``[-pi/T, pi/T]``, nearly; no real part on the unit circle."""
+    z, turn = multiplier.ball, acb(0)
+    if z.real.mid() < 0:  # the logarithm is cut there
+        z, turn = -z, acb(0, arb.pi() if z.imag.mid() >= 0 else -arb.pi())
+    found = z.log() + turn
+    return (acb(0, found.imag) if multiplier.on_unit_circle else found) / period
+
+
 def multipliers_of(matrix: Any, known: Structure) -> list[Multiplier]:
     """The multipliers of a matrix of balls, sorted by modulus, largest first.
 

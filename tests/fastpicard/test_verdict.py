@@ -20,6 +20,7 @@ from fastpicard import (
     boundaries,
     certify,
     chart,
+    mathieu_exponent,
     tabulate,
 )
 from fastpicard.halfway import known_structure
@@ -234,6 +235,49 @@ def test_an_indefinite_form_bounds_nothing():
     boost = Matrix([[0, 1 + cos(t), 0], [1 + cos(t), 0, sin(t) / 9], [0, -sin(t) / 9, 0]])
     assert FloquetMatrix(boost, t, 0).verdict() == Verdict.UNSTABLE
     assert not known_structure(FloquetMatrix(boost, t, 0)).bounded
+
+
+# -- exponents -------------------------------------------------------------------
+
+
+@settings(max_examples=40)
+@given(st.fractions(-2, 12, max_denominator=99), st.fractions(-3, 3, max_denominator=99))
+def test_exponents_of_mathieus_equation_are_its_characteristic_exponent(x, q):
+    """mu = i nu up to signs, and up to 2 i where nu is 1 + i s: another route, to 20 digits."""
+    nu = mathieu_exponent(x, q, 25)
+    P = Matrix([[0, 1], [-a + 2 * b * cos(2 * t), 0]])
+    found = FloquetMatrix(P, t, 0, pi).exponents({a: x, b: q}, 20)
+
+    with mpmath.workdps(25):
+        for mu in found:
+            apart = min(abs(mu - sign * z - turn) for z in (1j * nu, 1j * mpmath.conj(nu)) for sign in (1, -1)
+                        for turn in (0, 2j, -2j))
+            assert apart < 1e-19
+        assert abs((found[0] + found[1]).real) < 1e-19
+
+
+@pytest.mark.parametrize("A", [[[0, 1], [-1, -Rational(1, 2)]], [[-1, 2], [0, Rational(1, 3)]],
+                               [[0, 1, 0], [-4, 0, 0], [1, 0, -1]]], ids=str)
+def test_exponents_of_constant_systems_are_their_eigenvalues(A):
+    """Whatever the period, up to multiples of 2 pi i / T; a smaller one leaves them as they are."""
+    expected = [complex(z) for z, count in Matrix(A).eigenvals().items() for _ in range(count)]
+    found = FloquetMatrix(Matrix(A), t, 0, 1).exponents()
+
+    for z in expected:
+        assert min(abs(z - mu) for mu in found) < 1e-14
+    assert [mu.real for mu in found] == sorted((mu.real for mu in found), reverse=True)
+
+
+def test_exponents_have_the_mean_trace_for_their_sum_and_the_digits_asked_for():
+    """Liouville; exp(mu T) is the multiplier; on the circle nothing is left of the real part."""
+    values = {a: Rational(1, 3), b: Rational(1, 4), c: Rational(1, 7)}
+    mu, multipliers = DAMPED.exponents(values, 40), DAMPED.multipliers(values, 40)
+    with mpmath.workdps(45):
+        assert abs(sum(x.real for x in mu) + mpmath.mpf(1) / 7) < mpmath.mpf(10) ** -40
+        assert all(abs(mpmath.exp(x * 2 * mpmath.pi) - z) < mpmath.mpf(10) ** -38
+                   for x, z in zip(mu, multipliers, strict=True))
+    assert all(x.real == 0 for x in MATHIEU.exponents({a: -0.1, b: 0.55}))
+    assert FloquetMatrix(Matrix([[cos(t)]]), t, 0).exponents() == [0]
 
 
 # -- what drifts -------------------------------------------------------------------
@@ -521,6 +565,7 @@ def test_irrational_coefficients_do_not_hide_the_structure():
 QUESTIONS = [
     FloquetMatrix.verdict,
     FloquetMatrix.multipliers,
+    FloquetMatrix.exponents,
     FloquetMatrix.enclosure,
     FloquetMatrix.remainder,
     lambda F, values: FloquetMatrix.for_accuracy(F.P, t, values, Rational(1, 10), F.period),
