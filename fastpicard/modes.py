@@ -143,14 +143,8 @@ def add_reflected(target: Modes, kind: int, turned: bool, angle: Angle, monomial
     add_mode(target, kind, angle, monomial, polynomial)
 
 
-def time_power(r: int) -> tuple[int, Any]:
-    """``t**r`` as ``(kind, polynomial)`` at the angle zero."""
-    sign = (-1) ** ((r + 1) // 2)
-    return r % 2, fmpq_poly([0] * r + [sign * factorial(r)])
-
-
 def trigonometric(sine: bool, r: int) -> tuple[int, Any]:
-    """``t**r cos`` or ``t**r sin`` of any angle as ``(kind, polynomial)``."""
+    """``t**r cos`` or ``t**r sin`` of any angle as ``(kind, polynomial)``; ``t**r`` is the cosine of the angle zero."""
     kind = (r + sine) % 2
     quarter_turns = (r + 1) // 2 if kind == SIN else r // 2
     return kind, fmpq_poly([0] * r + [(-1) ** quarter_turns * factorial(r)])
@@ -221,6 +215,18 @@ def product(left: Modes, right: Modes) -> Modes:
     return result
 
 
+def power(modes: Modes, exponent: int) -> Modes:
+    """A power with an exponent from 0 up, by repeated squaring."""
+    result = constant({ONE: fmpq(1)})
+    while exponent:
+        if exponent & 1:
+            result = product(result, modes)
+        exponent >>= 1
+        if exponent:
+            modes = product(modes, modes)
+    return result
+
+
 def _multiply_modes(target: Modes, left: Key, f: Any, right: Key, g: Any) -> None:
     """cos cos, sin cos and sin sin; the first factor is the sine where only one is."""
     (kind, x, m), (other, y, n) = left, right
@@ -254,7 +260,7 @@ def antiderivative(modes: Modes) -> Modes:
     result: Modes = {}
     for (kind, angle, monomial), f in modes.items():
         sign = 1 if kind == COS else -1
-        for m, g in mode_antiderivative(angle[0], _frozen(f)):
+        for m, g in mode_antiderivative(angle[0], tuple(f.coeffs())):
             factor, product_monomial = multiply_monomials(monomial, m)
             polynomial = fmpq_poly(list(g)) * (sign * factor)
             add_mode(result, 1 - kind, angle, product_monomial, polynomial)
@@ -262,10 +268,6 @@ def antiderivative(modes: Modes) -> Modes:
                 turned, start = orient(((), angle[1]))
                 add_reflected(result, 1 - kind, turned, start, product_monomial, fmpq_poly([-polynomial[0]]))
     return result
-
-
-def _frozen(f: Any) -> tuple[Any, ...]:
-    return tuple(f.coeffs())
 
 
 @lru_cache(maxsize=1 << 14)

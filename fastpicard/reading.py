@@ -234,7 +234,7 @@ def _checked_power(exponent: Any, e: Expr) -> int:
 
 @lru_cache(maxsize=1024)
 def _time_power(r: int) -> Modes:
-    kind, polynomial = algebra.time_power(r)
+    kind, polynomial = algebra.trigonometric(False, r)
     return {(kind, NO_ANGLE, ONE): polynomial}
 
 
@@ -244,7 +244,7 @@ def _read_power(e: Expr, t: Symbol) -> Modes:
         return _read_other(e, t)
     if exponent.is_Integer and exponent >= 0:
         whole = _checked_power(exponent, e)
-        return _time_power(whole) if base == t else _raise(_read(base, t), whole)
+        return _time_power(whole) if base == t else algebra.power(_read(base, t), whole)
     if t in base.free_symbols:
         return _read_other(e, t)
     if exponent.is_Integer:
@@ -280,19 +280,7 @@ def _negative_power(base: Expr, exponent: int, e: Expr, t: Symbol) -> Modes:
     if any(angle != NO_ANGLE for _, angle, _ in modes):
         return algebra.constant(power(base, exponent))
     inverse = reciprocal({m: f[0] for (_, _, m), f in modes.items()})
-    return _raise(algebra.constant(inverse), -exponent)
-
-
-def _raise(modes: Modes, exponent: int) -> Modes:
-    """A nonnegative power by repeated squaring."""
-    result = algebra.constant({ONE: fmpq(1)})
-    while exponent:
-        if exponent & 1:
-            result = algebra.product(result, modes)
-        exponent >>= 1
-        if exponent:
-            modes = algebra.product(modes, modes)
-    return result
+    return algebra.power(algebra.constant(inverse), -exponent)
 
 
 @lru_cache(maxsize=1 << 12)

@@ -21,7 +21,6 @@ from fastpicard.latex import sentence, shown
 from fastpicard.modes import Modes
 from fastpicard.origin import at_time
 from fastpicard.reading import as_expression, as_finite, as_time, read, read_constant
-from fastpicard.ring import ONE, rational
 from fastpicard.values import Values
 from fastpicard.writing import dyadic, write
 
@@ -169,10 +168,7 @@ class PoissonSeries:
         if exponent < 0:
             raise BadInputError("a power of a series is a series for exponents from 0 up, but the exponent is "
                                 f"{printed(exponent)}.  Negative powers leave the family.")
-        result = self._make(algebra.constant({ONE: rational(sympy.Integer(1))}))
-        for _ in range(int(exponent)):
-            result = result * self
-        return result
+        return self._make(algebra.power(self._modes, int(exponent)))
 
     def scale(self, factor: Any) -> PoissonSeries:
         """The series times a constant: a number or an expression free of the time."""
