@@ -409,7 +409,8 @@ class FloquetMatrix(AsMatrix):
         Solutions are ``exp(mu t)`` times functions of period T.  In the order of :meth:`multipliers`, fastest growth
         first.  The real part is a Lyapunov exponent, 0 where the multiplier is proved to be on the unit circle; the
         imaginary part, a frequency or quasienergy, is that in ``[-pi/T, pi/T]``: multiples of ``2 pi/T`` are free.
-        Right to ``10**-digits / T``, 15 digits where none are given.  Raises as :meth:`multipliers`.
+        Right to ``10**-digits`` of ``1/T`` or of ``|mu|``, whichever is larger, 15 digits where none are given.  Raises
+        as :meth:`multipliers`.
 
         Examples
         --------

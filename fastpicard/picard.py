@@ -121,8 +121,10 @@ class PicardIterate(AsMatrix):
         return self.series.as_matrix()
 
     def __call__(self, time: Any) -> ImmutableMatrix:
-        """The exact iterate at a time: SymPy expressions in the parameters.
+        """The exact iterate at a time: SymPy expressions in the parameters, expanded.
 
+        At a sum of Symbols powers are multiplied out, so that the iterate at its origin is the initial value; a sum of
+        three and more is better put in for a Symbol afterwards.
         With Symbols among the frequencies it is that of generic ones: at a resonance it is another, also where SymPy
         has made ``sin(2*pi*k)/k`` zero for an integer k.
         """

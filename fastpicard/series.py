@@ -215,7 +215,7 @@ class PoissonSeries:
     # -- values --------------------------------------------------------------
 
     def __call__(self, time: Any) -> Expr:
-        """The exact value at a time, a SymPy expression in the parameters."""
+        """The exact value at a time, a SymPy expression in the parameters, powers of sums multiplied out."""
         return at_time(self._modes, time, self._t)
 
     def evaluate(self, time: Any, values: Values | None = None, digits: int | None = None) -> Any:
