@@ -214,8 +214,9 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     -----
     Stable means bounded solutions; with damping, asymptotically stable.  Mathieu's equation, a in [-1, 5], b in [0, 6]:
     all but 1e-4 of the area in 3 to 10 s by machine, see ``benchmarks/charts.py``.  Of a damped one the iterate alone
-    may take longer, and of one that does not reverse in time, such as with ``sin 2t`` beside ``cos t``, minutes, which
-    ``seconds`` does not count; longer still with 0.1, a dyadic number of 55 bits, in place of ``Rational(1, 10)``.
+    may take longer, and of one that does not reverse in time, such as with ``sin 2t`` beside ``cos t``, far longer,
+    which ``seconds`` does not count; longer still with 0.1, a dyadic number of 55 bits, in place of
+    ``Rational(1, 10)``.
 
     Examples
     --------

@@ -29,6 +29,11 @@ def coefficients(P: SeriesMatrix, values: Mapping[Any, Any]) -> dict[Any, dict[t
     return found
 
 
+def dense(entries: Mapping[tuple[int, int], Any], size: int) -> Any:
+    """One of them, shape (size, size), as an ``fmpq_mat``."""
+    return fmpq_mat([[entries.get((i, j), fmpq(0)) for j in range(size)] for i in range(size)])
+
+
 def kernel(blocks: list[list[list[Any]]], unknowns: int) -> list[list[Any]]:
     """A basis of the vectors with so many entries that all rows of all blocks send to 0."""
     rows = [row for block in blocks for row in block if any(row)]

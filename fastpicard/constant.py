@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from flint import fmpq, fmpq_mat, fmpq_poly
+from flint import fmpq_poly
 
-from fastpicard.coefficients import coefficients
+from fastpicard.coefficients import coefficients, dense
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS, NO_ANGLE
 from fastpicard.precision import working
@@ -29,8 +29,7 @@ def constant_matrix(P: SeriesMatrix, values: Mapping[Any, Any]) -> Any:
     constant = found.pop((COS, NO_ANGLE, ()), {})
     if found:
         return None
-    size = P.shape[0]
-    return fmpq_mat([[constant.get((i, j), fmpq(0)) for j in range(size)] for i in range(size)])
+    return dense(constant, P.shape[0])
 
 
 def by_minimal_polynomial(A: Any) -> Verdict:

@@ -13,13 +13,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from flint import fmpq
+from flint import fmpq_mat
 
-from fastpicard.coefficients import coefficients, kernel
+from fastpicard.coefficients import coefficients, dense, kernel
 from fastpicard.matrix import SeriesMatrix
 from fastpicard.modes import COS, NO_ANGLE, Linear
-
-Matrix = list[list[Any]]
 
 
 def drift(P: SeriesMatrix, values: Mapping[Any, Any], moves: Callable[[Linear], bool]) -> int:
@@ -29,31 +27,20 @@ def drift(P: SeriesMatrix, values: Mapping[Any, Any], moves: Callable[[Linear], 
     """
     size, found = P.shape[0], coefficients(P, values)
     waves, still = [], []  # what has no mean whatever the values; what may have one
-    mean: Matrix = _dense({}, size)
+    mean = dense({}, size)
     for (kind, angle, monomial), entries in found.items():
-        A = _dense(entries, size)
+        A = dense(entries, size)
         if angle[0] and moves(angle[0]):
             waves.append(A)
         elif (kind, angle, monomial) == (COS, NO_ANGLE, ()):
             mean = A
         else:
             still.append(A)
-    constants = kernel([_transposed(A) for A in (*waves, *still, mean)], size)
-    others = kernel([constants], size)  # on which all constants vanish
-    onto = [[_times(A, n) for n in others] for A in (*waves, *still, mean)]
-    linear = kernel([*onto, *map(_transposed, still)], size)
-    if any(any(_times(_transposed(mean), w)) for w in linear):
+    matrices = [*waves, *still, mean]
+    constants = kernel([A.transpose().tolist() for A in matrices], size)
+    others = [fmpq_mat(size, 1, x) for x in kernel([constants], size)]  # on which all constants vanish
+    onto = [(A * x).entries() for A in matrices for x in others]
+    linear = kernel([onto, *(A.transpose().tolist() for A in still)], size)
+    if any(any((fmpq_mat(1, size, w) * mean).entries()) for w in linear):
         return -1
     return 1 if len(linear) == size else 0
-
-
-def _dense(entries: Mapping[tuple[int, int], Any], size: int) -> Matrix:
-    return [[entries.get((i, j), fmpq(0)) for j in range(size)] for i in range(size)]
-
-
-def _transposed(A: Matrix) -> Matrix:
-    return [list(column) for column in zip(*A, strict=True)]
-
-
-def _times(A: Matrix, x: list[Any]) -> list[Any]:
-    return [sum((a * y for a, y in zip(row, x, strict=True)), fmpq(0)) for row in A]

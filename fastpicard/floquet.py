@@ -235,7 +235,7 @@ class FloquetMatrix(AsMatrix):
         Notes
         -----
         The first call computes the iterate in all Symbols, once for all points.  For one point only, put the numbers
-        into ``P`` first: every Symbol less takes the power of the order by one down that time and memory grow with.
+        into ``P`` first: the terms of Mathieu's iterates in s Symbols grow as the power s + 2 of the order.
         """
         return number_matrix(self.collapsed.at(values, digits), self.shape, check_digits(digits))
 
@@ -461,7 +461,7 @@ class FloquetMatrix(AsMatrix):
             with the sentence that proves it as ``.reason``.  Undecided means that the trace, or what else is asked,
             is within some ``1e-100`` of the end of stability (in parameters that is ``1e-50`` where two boundaries
             touch, and ``10**(-100/k)`` where k pairs of multipliers nearly coincide), or a box that a boundary may
-            cross, or that is too wide for one enclosure, some 1e-3: :func:`fastpicard.certify` divides boxes.  Where
+            cross, or that is too wide for one enclosure: :func:`fastpicard.certify` divides boxes.  Where
             ``P`` is constant with rational entries it is never undecided.
 
         Raises
