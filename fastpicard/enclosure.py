@@ -35,6 +35,7 @@ from fastpicard.precision import working
 
 MOST_PIECES, MOST_ORDERS = 1 << 20, 1 << 14
 MOST_POWERS = 1 << 60  # of one step, where P is constant
+MOST_TURNS = 2**63 - 1  # of a period
 
 
 def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: int, is_box: bool = False,
@@ -54,7 +55,7 @@ def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: 
     BadInputError
         if the parameters are balls too wide for the digits, or the system too stiff for any precision.
     """
-    def once() -> Any:
+    def compute() -> Any:
         P, period = build()
         part = period / turns
         signs = P.reversal
@@ -66,7 +67,7 @@ def over_period(build: Callable[[], tuple[Harmonics, Any]], turns: int, digits: 
         except ZeroDivisionError:  # too wide to be known as invertible
             return transition(P, arb(0), part) ** turns
 
-    return to_digits(once, digits, is_box, strict)
+    return to_digits(compute, digits, is_box, strict)
 
 
 def mirrored(half: Any, signs: Any) -> Any:
@@ -75,13 +76,37 @@ def mirrored(half: Any, signs: Any) -> Any:
     return mirror * half.inv() * mirror * half
 
 
+def over_time(P: Harmonics, length: Any, period: Any | None) -> Any:
+    """``Phi(length, 0)`` at the working precision, for a length of any sign: whole periods are one power.
+
+    ``Phi(t) = Phi(t - m T) Phi(T)**m`` holds for every integer ``m``, so that the one next to ``t/T`` need not be
+    proved to be that.  What a length is known to lies within is the last step, so that others are not widened by it.
+    """
+    if length.rel_accuracy_bits() < ctx.prec - 16 and length.mid() != 0:
+        middle = arb(length.mid())
+        return transition(P, middle, length) * over_time(P, middle, period)
+    if period is None:
+        return transition(P, arb(0), length)
+    turn = period if length.mid() >= 0 else -period
+    turns = int((length.mid() / turn.mid()).mid().floor().unique_fmpz())
+    if turns > MOST_TURNS:
+        raise BadInputError(f"a time can be {MOST_TURNS} periods at most, but it is {length.str(5)}.  Take a "
+                            "smaller one.")
+    rest = transition(P, arb(0), length - turn * turns)
+    return rest * transition(P, arb(0), turn) ** turns if turns else rest
+
+
 def to_digits(compute: Callable[[], Any], digits: int, is_box: bool = False, strict: bool = True) -> Any:
     """A matrix of balls, computed with more and more bits until it has the digits asked for."""
     wanted = dps_to_prec(digits)
     bits, before = wanted + 32, None
     while True:
         with working(bits):
-            found = compute()
+            try:
+                found = compute()
+            except OverflowError:
+                raise BadInputError("the coefficients of P must be floats in size, but they are beyond them.  Measure "
+                                    "the time in other units.") from None
             missing = shortfall(found, wanted)
         if missing <= 0:
             return found
@@ -89,13 +114,18 @@ def to_digits(compute: Callable[[], Any], digits: int, is_box: bool = False, str
             if not strict:
                 return found
             raise BadInputError(f"the digits asked for cannot be had: {digits} were asked for, and {bits} bits leave "
-                                f"{max(wanted - missing, 0) / math.log2(10):.0f}: the parameters are balls with a "
-                                f"radius.  Give numbers, narrower balls, or fewer digits.")
+                                f"{_digits(wanted - missing)}: something given is a ball with a radius.  Give numbers, "
+                                "narrower balls, or fewer digits.")
         if bits > 64 * wanted + 100_000:
             raise BadInputError(f"the matrix is not enclosed with {bits} bits.  Its entries are beyond reach: "
                                 "take a smaller period or smaller coefficients.")
         before = missing
         bits += int(missing) + 16 if math.isfinite(missing) else bits
+
+
+def _digits(bits: float) -> int:
+    """The largest number of digits for which so many bits are enough (mpmath's rule), from 0 up."""
+    return max(math.floor((math.floor(max(bits, 0)) + 0.5) / math.log2(10)) - 1, 0)
 
 
 def shortfall(matrix: Any, wanted: int) -> float:

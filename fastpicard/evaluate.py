@@ -300,6 +300,14 @@ def may_vanish(frequency: Linear, values: Mapping[Symbol, Any]) -> bool:
         return bool(Point(arb(0), values).linear(frequency).contains(0))
 
 
+def check_time(time: Any, number: Callable[[Any, str], Any] = exact_number) -> Any:
+    """The time as an exact number, or as what ``number`` makes of it."""
+    if isinstance(time, Mapping):
+        raise BadTypeError(f"the time must be a number, but it is {printed(time)}, a {type(time).__name__}.  Give it "
+                           "before the values: evaluate(1, {a: 2}).")
+    return number(time, "the time")
+
+
 def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, digits: int | None) -> list[Any]:
     """The values of several series at one time and one set of parameters, as numbers.
 
@@ -308,12 +316,9 @@ def evaluate(series: list[Modes], t: Symbol, time: Any, values: Values | None, d
     MissingParameterError
         if a parameter that occurs has no value.
     """
-    if isinstance(time, Mapping):
-        raise BadTypeError(f"the time must be a number, but it is {printed(time)}, a {type(time).__name__}.  Give it "
-                           "before the values: evaluate(1, {a: 2}).")
+    when = check_time(time)
     needed = set().union(*map(free_symbols, series)) if series else set()
     exact = exact_values(values, needed, t)
-    when = exact_number(time, "the time")
     digits = check_digits(digits)
     ready = list(map(prepared, series))
 

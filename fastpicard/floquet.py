@@ -23,8 +23,8 @@ from fastpicard import modes as algebra
 from fastpicard.collapsed import Collapsed
 from fastpicard.constant import by_minimal_polynomial, constant_matrix
 from fastpicard.enclosure import over_period
-from fastpicard.errors import BadInputError, printed
-from fastpicard.evaluate import ball, check_digits, count_of_digits, may_vanish, to_complex, upper_float
+from fastpicard.errors import BadInputError
+from fastpicard.evaluate import ball, check_digits, count_of_digits, may_vanish, to_complex
 from fastpicard.harmonics import Harmonics
 from fastpicard.iteration import Increments, first_increments, identity_columns
 from fastpicard.latex import summary
@@ -34,12 +34,12 @@ from fastpicard.parameters import BOUND_BITS, is_box, numbers_in, problem_at
 from fastpicard.period import check_period, whole_turns
 from fastpicard.precision import working
 from fastpicard.reading import as_expression, as_time
-from fastpicard.remainder import a_posteriori, largest_row_sum, smallest_order
+from fastpicard.remainder import a_posteriori, reported, smallest_order, tolerance
 from fastpicard.ring import ONE, Polynomial, multiply, read_only, symbols_of
 from fastpicard.spectrum import Multiplier, exponent, multipliers_of
 from fastpicard.stability import Verdict, judge
 from fastpicard.structure import Structure, structure
-from fastpicard.values import Values, check_order, exact_number
+from fastpicard.values import Values, check_order
 from fastpicard.vectorise import vectorise
 from fastpicard.writing import write
 
@@ -273,10 +273,7 @@ class FloquetMatrix(AsMatrix):
         42
         """
         first = cls(P, t, 0, period)
-        limit = exact_number(tol, "tol")
-        if not ball(limit) > 0:
-            raise BadInputError(f"tol must be positive, but it is {printed(tol)}.  Use 1e-12, say.")
-        exact = first.numbers(values)
+        limit, exact = tolerance(tol), first.numbers(values)
         with working(BOUND_BITS):
             return first.to_order(smallest_order(*first.at(exact), ball(limit)))
 
@@ -334,10 +331,7 @@ class FloquetMatrix(AsMatrix):
         """
         exact = self.numbers(values)
         with working(BOUND_BITS):
-            bound = a_posteriori(*self.at(exact), self.n)
-            if entrywise:
-                return number_matrix([upper_float(x) for x in bound.entries()], self.shape, None)
-            return upper_float(largest_row_sum(bound))
+            return reported(a_posteriori(*self.at(exact), self.n), entrywise)
 
     def enclosure(self, values: Values | None = None, digits: int = 15) -> Any:
         """A python-flint ``arb_mat`` that contains the true Floquet matrix of ``x' = P(t) x``.
@@ -375,11 +369,7 @@ class FloquetMatrix(AsMatrix):
 
     def _true(self, exact: Mapping[Any, Any], digits: int, strict: bool = True) -> Any:
         """The true matrix in balls with these digits, or if not strict with those that wide parameters leave."""
-        try:
-            return over_period(lambda: self.at(exact), self.turns, digits, is_box(exact), strict)
-        except OverflowError:
-            raise BadInputError(f"the coefficients of P must be floats in size, but at {dict(exact)} they are beyond "
-                                "them.  Measure the time in other units.") from None
+        return over_period(lambda: self.at(exact), self.turns, digits, is_box(exact), strict)
 
     def _structure(self, exact: Mapping[Any, Any]) -> Structure:
         return structure(self.P, exact, self.at(exact)[0].reversal is not None, lambda q: not may_vanish(q, exact))

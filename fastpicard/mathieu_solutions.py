@@ -20,15 +20,13 @@ from typing import Any
 from flint import acb, arb, arb_mat
 from mpmath.libmp import dps_to_prec
 
-from fastpicard.enclosure import shortfall, to_digits, transition
+from fastpicard.enclosure import over_time, shortfall, to_digits, transition
 from fastpicard.errors import BadInputError
 from fastpicard.evaluate import EXTRA_BITS, ball, count_of_digits, to_complex, to_number
 from fastpicard.harmonics import Harmonics
 from fastpicard.parameters import is_box
 from fastpicard.precision import working
 from fastpicard.values import exact_number
-
-MOST_TURNS = 2**63 - 1
 
 
 def mathieu_c(a: Any, q: Any, z: Any, digits: int = 15) -> Any:
@@ -146,7 +144,7 @@ def _solution(a: Any, q: Any, z: Any, digits: Any, column: int) -> Any:
     def once() -> Any:
         x, y, end = map(ball, numbers.values())
         end = _settled(end, least)
-        value = _fundamental(_equation(x, y), end)[0, column]
+        value = over_time(_equation(x, y), end, arb.pi())[0, column]
         return arb_mat([[_settled(value, least * end.abs_lower())]])  # w_II is like z where z is small
 
     return to_number(to_digits(once, wanted + 2, is_box(numbers))[0, 0], wanted)
@@ -155,19 +153,6 @@ def _solution(a: Any, q: Any, z: Any, digits: Any, column: int) -> Any:
 def _settled(x: Any, least: Any) -> Any:
     """0 in place of a ball around 0 with a radius below the least."""
     return arb(0) if x.contains(0) and x.rad() < least else x
-
-
-def _fundamental(P: Harmonics, z: Any) -> Any:
-    """``Phi(z) = Phi(z - m pi) Phi(pi)**m``, with ``-pi`` in place of ``pi`` where z is negative.
-
-    It holds for every integer ``m``, so that the one next to ``z/pi`` need not be proved to be that.
-    """
-    turn = arb.pi() if z.mid() >= 0 else -arb.pi()
-    turns = int((z.mid() / turn).mid().floor().unique_fmpz())
-    if turns > MOST_TURNS:
-        raise BadInputError(f"z can make {MOST_TURNS} turns of pi at most, but it is {z.str(5)}.  Take a smaller one.")
-    rest = transition(P, arb(0), z - turn * turns)
-    return rest * transition(P, arb(0), turn) ** turns if turns else rest
 
 
 def _equation(a: Any, q: Any) -> Harmonics:

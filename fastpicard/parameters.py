@@ -6,8 +6,8 @@ for every point of the box.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
 
 from flint import arb
 from sympy import Expr
@@ -20,6 +20,7 @@ from fastpicard.precision import working
 from fastpicard.ring import Polynomial
 from fastpicard.values import Values, exact_number, exact_values
 
+T = TypeVar("T")
 BOUND_BITS = 8192  # the precision of P and T where a bound is asked for, or where less leaves them in doubt
 
 
@@ -34,10 +35,11 @@ def numbers_in(P: SeriesMatrix, values: Values | None, others: Iterable[Any] = (
         if ``lo > hi``.
     """
     needed = set(others).union(*(free_symbols(modes) for row in P.rows for modes in row))
-    return exact_values(values, needed, P.t, _number_or_interval)
+    return exact_values(values, needed, P.t, number_or_interval)
 
 
-def _number_or_interval(value: Any, what: str) -> Any:
+def number_or_interval(value: Any, what: str) -> Any:
+    """An exact number, or for ``(lo, hi)`` a ball; raises as :func:`numbers_in`, or BadTypeError."""
     if not isinstance(value, tuple):
         try:
             return exact_number(value, what)
@@ -68,23 +70,35 @@ def problem_at(P: SeriesMatrix, period: Expr, length: Polynomial, exact: Mapping
     BadInputError
         if ``P`` or ``T`` is not finite there, or ``T`` not positive; in a box, everywhere.
     """
-    def once() -> tuple[Harmonics, Any]:
-        return harmonics(P, exact), Point(arb(0), exact).polynomial(length)
-
-    found = once()
-    if not _is_proper(*found):
-        with working(BOUND_BITS):
-            found = once()
-    if _is_proper(*found):
-        return found
-    where = ", ".join(f"{s} = {v}" for s, v in sorted(exact.items(), key=str)) or "no parameters"
-    if not found[0].is_finite or not found[1].is_finite():
-        raise BadInputError(f"P and its period must be finite and real, but one of them is not at {where}: a pole, "
-                            "or a root of a negative number.  Keep away from there.")
-    raise BadInputError(f"the period must be positive, but {period} is {found[1].str(5)} at {where}.  "
+    at, time = proved(lambda: (harmonics(P, exact), Point(arb(0), exact).polynomial(length)), _is_proper)
+    if _is_proper((at, time)):
+        return at, time
+    if not at.is_finite or not time.is_finite():
+        raise not_finite("P and its period", exact)
+    raise BadInputError(f"the period must be positive, but {period} is {time.str(5)} at {_where(exact)}.  "
                         "Choose the sign of the parameters so that it is.")
 
 
-def _is_proper(P: Harmonics, period: Any) -> bool:
+def _is_proper(found: tuple[Harmonics, Any]) -> bool:
     """Whether ``P`` and the period are finite, and the period is positive, whatever the balls stand for."""
+    P, period = found
     return P.is_finite and bool(period.is_finite()) and bool(period > 0)
+
+
+def proved(build: Callable[[], T], suffices: Callable[[T], bool]) -> T:
+    """What is built in balls of the working precision, or of ``BOUND_BITS`` where these do not suffice."""
+    found = build()
+    if not suffices(found):
+        with working(BOUND_BITS):
+            found = build()
+    return found
+
+
+def not_finite(what: str, exact: Mapping[Any, Any]) -> BadInputError:
+    """The exception for a pole."""
+    return BadInputError(f"{what} must be finite and real, but one of them is not at {_where(exact)}: a pole, or a "
+                         "root of a negative number.  Keep away from there.")
+
+
+def _where(exact: Mapping[Any, Any]) -> str:
+    return ", ".join(f"{s} = {v}" for s, v in sorted(exact.items(), key=str)) or "no parameters"

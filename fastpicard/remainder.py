@@ -30,9 +30,12 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_poly
 
-from fastpicard.errors import BadInputError
+from fastpicard.errors import BadInputError, printed
+from fastpicard.evaluate import ball, upper_float
 from fastpicard.harmonics import Harmonics
+from fastpicard.matrix import number_matrix
 from fastpicard.precision import working
+from fastpicard.values import exact_number
 
 BITS = 64  # for bounds, whose own digits matter little
 MOST_INCREMENTS, LEVELS = 300, 6  # how far to go for a sharp bound
@@ -49,7 +52,7 @@ def a_priori(P: Harmonics, period: Any, n: int) -> Any:
         # all that follow are less than half of the last two.
         last = max(n + 1, math.ceil(2 * peak)) + BITS
         before = total = arb_mat(P.size, P.size)
-        term = arb_mat(P.size, P.size, _identity(P.size))
+        term = identity(P.size)
         for k in range(1, last + 1):
             before, term = term, term * X / k
             if k > n:
@@ -60,25 +63,30 @@ def a_priori(P: Harmonics, period: Any, n: int) -> Any:
         return arb_mat(P.size, P.size, [(x + tail).upper() for x in total.entries()])
 
 
-def a_posteriori(P: Harmonics, period: Any, n: int) -> Any:
+def a_posteriori(P: Harmonics, period: Any, n: int, start: Any = None) -> Any:
     """The bound from increments computed at these parameters, as an ``arb_mat`` of upper bounds.
 
-    If increments grow up to an order beyond ``MOST_INCREMENTS``, the a-priori sum is the bound.
+    Of the fundamental matrix, or of the solutions with the columns of ``start`` as initial values; the period is any
+    length of time, of any sign.  If increments grow up to an order beyond ``MOST_INCREMENTS``, the a-priori sum is the
+    bound.
     """
-    first = a_priori(P, period, n)
+    start = identity(P.size) if start is None else start
+    sizes = _upper(start)
+    first = _upper(a_priori(P, period, n) * sizes)
     if _is_zero(first) or _peak(P, period) > max(n, MOST_INCREMENTS):
         return first
+    wide = P.is_wide or any(x.rel_accuracy_bits() < 32 for x in (period, *start.entries()))
     for level in range(0, LEVELS, 2):
-        rest, total, k = first, arb_mat(P.size, P.size), n
-        source = increments_at_end(P, period, n, level)
+        rest, total, k = first, 0 * start, n
+        source = increments_at_end(P, period, n, level, start)
         for _ in range(n + 1):
             next(source)
         while 100 * largest_row_sum(rest) > largest_row_sum(_upper(total)) and not _is_zero(rest):
             k += 1
             with working(_bits(level)):
                 total = total + next(source)
-            rest = a_priori(P, period, k)
-        if _is_sharp(total) or P.is_wide:
+            rest = a_priori(P, period, k) * sizes
+        if _is_sharp(total) or wide:
             break
     return _least(_upper(total) + rest, first)
 
@@ -127,6 +135,21 @@ def a_priori_order(P: Harmonics, period: Any, tol: Any) -> int:
     return least_order(lambda n: bool(largest_row_sum(a_priori(P, period, n)) <= tol))
 
 
+def tolerance(tol: Any) -> Any:
+    """``tol`` as an exact number; BadInputError if it is not positive."""
+    limit = exact_number(tol, "tol")
+    if not ball(limit) > 0:
+        raise BadInputError(f"tol must be positive, but it is {printed(tol)}.  Use 1e-12, say.")
+    return limit
+
+
+def reported(bound: Any, entrywise: bool) -> Any:
+    """A matrix of upper bounds as the user gets it: the largest row sum as a float, or all of them as an array."""
+    if entrywise:
+        return number_matrix([upper_float(x) for x in bound.entries()], (bound.nrows(), bound.ncols()), None)
+    return upper_float(largest_row_sum(bound))
+
+
 def least_order(suffices: Callable[[int], bool], start: int = 1) -> int:
     """The smallest ``n`` above ``start/2`` that suffices, as all beyond it do: by doubling and bisection."""
     high = start
@@ -148,8 +171,9 @@ def _least(left: Any, right: Any) -> Any:
                    [min(x.upper(), y.upper()) for x, y in zip(left.entries(), right.entries(), strict=True)])
 
 
-def _identity(size: int) -> list[int]:
-    return [int(i == j) for i in range(size) for j in range(size)]
+def identity(size: int) -> Any:
+    """The unit matrix, exact."""
+    return arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
 
 
 def _is_zero(matrix: Any) -> bool:
@@ -168,18 +192,17 @@ def _bits(level: int) -> int:
     return 192 << level
 
 
-def increments_at_end(P: Harmonics, period: Any, n: int, level: int = 0) -> Iterator[Any]:
+def increments_at_end(P: Harmonics, period: Any, n: int, level: int = 0, start: Any = None) -> Iterator[Any]:
     """``I_0(T), I_1(T), ...`` as ``arb_mat``; orders around n keep many digits, more at a higher level."""
+    end = identity(P.size) if start is None else start
     fastest = float((abs(period) * P.highest).upper()) / 2
     pieces = max(8, n // 6, math.ceil(fastest), math.ceil(_peak(P, period) / 4))
     degree, bits = 36 + 20 * level, _bits(level)
-    size = P.size
     with working(bits):
         step = period / pieces
         models = [{place: _model(waves, step, degree) for place, waves in P.shifted(step * m).waves.items()}
                   for m in range(pieces)]
-        current = [[[arb_poly([int(i == j)]) for j in range(size)] for i in range(size)]] * pieces
-        end = arb_mat(size, size, _identity(size))
+        current = [[[arb_poly([x]) for x in row] for row in end.tolist()]] * pieces
     while True:
         yield end
         with working(bits):
@@ -203,13 +226,13 @@ def _model(waves: list[Any], step: Any, degree: int) -> Any:
 
 def _next_increment(models: list[Any], current: list[Any], degree: int) -> tuple[list[Any], Any]:
     """From ``I_k`` on all pieces to ``I_{k+1}``, with its value at the end."""
-    size = len(current[0])
-    start = [[arb(0)] * size for _ in range(size)]
+    size, columns = len(current[0]), len(current[0][0])
+    start = [[arb(0)] * columns for _ in range(size)]
     result = []
     for P, rows in zip(models, current, strict=True):
-        new = [[arb_poly()] * size for _ in range(size)]
+        new = [[arb_poly()] * columns for _ in range(size)]
         for i in range(size):
-            for j in range(size):
+            for j in range(columns):
                 product = sum((P[i, k] * rows[k][j] for k in range(size) if (i, k) in P and rows[k][j].length()),
                               arb_poly())
                 new[i][j] = _folded(product, degree - 1).integral() + start[i][j]

@@ -49,7 +49,7 @@ def test_far_away_they_cost_what_they_cost_over_one_period(z):
 
 def test_too_far_away_is_refused():
     """Powers of a matrix go to 2**63."""
-    with pytest.raises(BadInputError, match="turns of pi at most"):
+    with pytest.raises(BadInputError, match="periods at most"):
         mathieu_c(2, 1, 10**30)
 
 
