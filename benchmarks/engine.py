@@ -12,9 +12,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from sympy import Matrix, cos, symbols
+from sympy import Matrix, cos, sqrt, symbols
 
-from fastpicard import FloquetMatrix, FundamentalMatrix
+from fastpicard import FloquetMatrix, FundamentalMatrix, SeriesMatrix
 
 sys.path.insert(0, str(Path(__file__).parent))
 import peer
@@ -61,10 +61,31 @@ def peer_row(n: int) -> None:
     print(f"{n:4} {count:8} {theirs:9.4f} {theirs / entries:8.2f} {theirs / phi:7.2f}", flush=True)
 
 
+def without_unit(orders: list[int]) -> None:
+    print("two waves, cos t and cos(sqrt(2) t), against cos t and cos(3 t), entries written out")
+    print(f"{'n':>4} {'terms':>8} {'terms':>8} {'s':>8} {'s':>8} {'time a term':>12}")
+    for n in orders:
+        unit_row(n)
+
+
+def unit_row(n: int) -> None:
+    without, with_unit = (Matrix([[0, 1], [-DRIVE - b * cos(q * t), 0]]) for q in (sqrt(2), 3))
+    slow, fast = compare(lambda: FundamentalMatrix(without, t, n).series,
+                         lambda: FundamentalMatrix(with_unit, t, n).series, repeats=2)
+    many, few = (terms(FundamentalMatrix(P, t, n).series) for P in (without, with_unit))
+    print(f"{n:4} {many:8} {few:8} {slow:8.3f} {fast:8.3f} {slow / many / (fast / few):12.1f}", flush=True)
+
+
+def terms(matrix: SeriesMatrix) -> int:
+    """How many terms the entries have."""
+    return sum(1 for row in matrix.rows for modes in row for f in modes.values() for c in f.coeffs() if c)
+
+
 def main() -> None:
     FundamentalMatrix(MATHIEU, t, 3).as_matrix()
     against_yardstick([20, 30, 50] + [100] * ("--long" in sys.argv))
     against_peer([20, 30, 50])
+    without_unit([16, 24])
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 r"""`gather`, `product_to_sum` and `new_integrate`: the article's tools on SymPy expressions.
 
 ``new_integrate`` replaces the built-in integral for the family F ([Neves],
-section 4): the antiderivative is found by the recursion (8) and (9), summed and
-remembered, and its constant makes it vanish at time 0,
+section 4): the antiderivative is found by the recursion (8) and (9), summed to one
+division whose divisor is remembered, and its constant makes it vanish at time 0,
 
     I[sin qt] = 1/q - (1/q) cos qt
 

@@ -37,9 +37,11 @@ from fastpicard.ring import (
     Monomial,
     Polynomial,
     fraction,
+    has_square_roots_only,
     is_zero,
     multiply,
     multiply_monomials,
+    ratio,
     reciprocal,
 )
 
@@ -74,7 +76,7 @@ def _combine(left: Linear, right: Linear, sign: int) -> Linear:
     for monomial, value in right:
         value = total.get(monomial, 0) + sign * value
         if value:
-            total[monomial] = value if value.denominator != 1 else int(value)
+            total[monomial] = ratio(value)
         else:
             del total[monomial]
     return tuple(sorted(total.items()))
@@ -98,7 +100,7 @@ def orient(angle: Angle) -> tuple[bool, Angle]:
     lead = frequency or phase
     if not lead or lead[-1][1] > 0:
         return False, angle
-    return True, (tuple((m, -c) for m, c in frequency), tuple((m, -c) for m, c in phase))
+    return True, (tuple((m, ratio(-c)) for m, c in frequency), tuple((m, ratio(-c)) for m, c in phase))
 
 
 def common_unit(frequencies: set[Linear]) -> tuple[Monomial, Any] | None:
@@ -208,7 +210,7 @@ def product(left: Modes, right: Modes) -> Modes:
     result: Modes = {}
     for (kind, x, m), f in left.items():
         for (other, y, n), g in right.items():
-            if kind == COS and other == SIN:
+            if kind < other or (kind == other and f.degree() < g.degree()):
                 _multiply_modes(result, (other, y, n), g, (kind, x, m), f)
             else:
                 _multiply_modes(result, (kind, x, m), f, (other, y, n), g)
@@ -228,12 +230,16 @@ def power(modes: Modes, exponent: int) -> Modes:
 
 
 def _multiply_modes(target: Modes, left: Key, f: Any, right: Key, g: Any) -> None:
-    """cos cos, sin cos and sin sin; the first factor is the sine where only one is."""
+    """cos cos, sin cos and sin sin; the first factor is the sine where only one is, else that of the higher degree."""
     (kind, x, m), (other, y, n) = left, right
     factor, monomial = multiply_monomials(m, n)
+    if y == NO_ANGLE and g.degree() == 0:  # a constant
+        add_mode(target, kind, x, monomial, f * (g[0] * factor))
+        return
     half = factor / 2
-    outer = divided_product(f, g) * half
-    inner = divided_product(f, g(_FLIP)) * half
+    outer = inner = divided_product(f, g) * half
+    if g.degree() > 0:
+        inner = divided_product(f, g(_FLIP)) * half
     if other == SIN:
         kind, outer = COS, -outer
     add_reflected(target, kind, *add_angles(x, y, 1), monomial, outer)
@@ -258,56 +264,80 @@ def derivative(modes: Modes) -> Modes:
 def antiderivative(modes: Modes) -> Modes:
     """The antiderivative that is zero at ``t = 0``."""
     result: Modes = {}
+    starts: dict[Key, list[Any]] = {}
     for (kind, angle, monomial), f in modes.items():
         sign = 1 if kind == COS else -1
-        for m, g in mode_antiderivative(angle[0], tuple(f.coeffs())):
+        turned, start = orient(((), angle[1]))
+        for m, g in mode_antiderivative(angle[0], f):
             factor, product_monomial = multiply_monomials(monomial, m)
-            polynomial = fmpq_poly(list(g)) * (sign * factor)
+            polynomial = g if sign * factor == 1 else g * (sign * factor)
             add_mode(result, 1 - kind, angle, product_monomial, polynomial)
             if angle[0]:
-                turned, start = orient(((), angle[1]))
-                add_reflected(result, 1 - kind, turned, start, product_monomial, fmpq_poly([-polynomial[0]]))
+                value = polynomial[0] if turned and kind == COS else -polynomial[0]
+                starts.setdefault((1 - kind, start, product_monomial), []).append(value)
+    for (kind, start, monomial), values in starts.items():
+        add_mode(result, kind, start, monomial, fmpq_poly([rational_sum(values)]))
     return result
 
 
-@lru_cache(maxsize=1 << 14)
-def mode_antiderivative(frequency: Linear, f: tuple[Any, ...]) -> tuple[tuple[Monomial, tuple[Any, ...]], ...]:
-    """Solve ``q G_r = f_r + G_{r+1}`` downwards: pairs (monomial, coefficients) whose sum is ``G``.
+def rational_sum(numbers: list[Any]) -> Any:
+    """The sum of rational numbers, over one denominator inside python-flint."""
+    return fmpq_poly(numbers)(1)
 
-    Every integral is computed once and remembered, as the article's recursion does.
+
+def mode_antiderivative(frequency: Linear, f: Any) -> list[tuple[Monomial, Any]]:
+    """Solve ``q G_r = f_r + G_{r+1}`` downwards: pairs (monomial, polynomial) whose sum is ``G``.
+
+    That is one division, ``x f = (q x - 1) G + G_0``.  Where q has square roots in it both sides are multiplied by the
+    conjugates of ``q x - 1``, so that the divisor is rational.
     """
     if not frequency:
-        return ((ONE, (fmpq(0), *(-c for c in f))),)
-    inverse = _inverse(frequency)
-    if list(inverse) == [ONE]:
-        return ((ONE, _recurrence(inverse[ONE], f)),)
-    return _symbolic_recurrence(inverse, f)
+        return [(ONE, -f.left_shift(1))]
+    divisor, factors = _divisor(frequency)
+    return [(m, f * x // divisor) for m, x in factors] if divisor else _generic_antiderivative(frequency, f)
 
 
 @lru_cache(maxsize=1 << 12)
-def _inverse(frequency: Linear) -> Polynomial:
-    return reciprocal(as_polynomial(frequency))
+def _divisor(frequency: Linear) -> tuple[Any, tuple[tuple[Monomial, Any], ...]]:
+    """The product of all conjugates of ``q x - 1``, and x times that of the others; None where there are none."""
+    if not has_square_roots_only(m for m, _ in frequency):
+        return None, ()
+    product = {m: fmpq_poly([0, c]) for m, c in as_polynomial(frequency).items()}
+    product[ONE] = product.get(ONE, fmpq_poly()) - 1
+    others = {ONE: fmpq_poly([0, 1])}
+    for g in sorted({g for m in product for g, _ in m}):
+        conjugate = {m: -c if any(g == other for other, _ in m) else c for m, c in product.items()}
+        if conjugate != product:
+            product, others = _times(product, conjugate), _times(others, conjugate)
+    return product[ONE], tuple(others.items())
 
 
-def _recurrence(inverse: Any, f: tuple[Any, ...]) -> tuple[Any, ...]:
-    g, result = fmpq(0), []
-    for value in reversed(f):
-        g = (value + g) * inverse
-        result.append(g)
-    return tuple(reversed(result))
+def _times(left: dict[Monomial, Any], right: dict[Monomial, Any]) -> dict[Monomial, Any]:
+    """The product of two polynomials in x with square roots in their coefficients."""
+    result: dict[Monomial, Any] = {}
+    for m, c in left.items():
+        for n, d in right.items():
+            factor, monomial = multiply_monomials(m, n)
+            result[monomial] = result.get(monomial, fmpq_poly()) + c * d * factor
+    return {m: c for m, c in result.items() if c}
 
 
-def _symbolic_recurrence(inverse: Polynomial, f: tuple[Any, ...]) -> tuple[tuple[Monomial, tuple[Any, ...]], ...]:
-    """``G = sum_k q**-(k+1) S**k f`` with ``S`` the shift down, where ``1/q`` is no rational number."""
-    collected: dict[Monomial, list[Any]] = {}
-    powers = inverse
-    for k in range(len(f)):
-        for m, c in powers.items():
-            row = collected.setdefault(m, [fmpq(0)] * len(f))
-            for r in range(len(f) - k):
-                row[r] += c * f[r + k]
-        powers = multiply(powers, inverse)
-    return tuple((m, tuple(row)) for m, row in collected.items())
+def _generic_antiderivative(frequency: Linear, f: Any) -> list[tuple[Monomial, Any]]:
+    """``G = sum_k q**-(k+1) S**k f`` with ``S`` the shift down."""
+    collected: dict[Monomial, Any] = {}
+    for k in range(f.degree() + 1):
+        shifted = f.right_shift(k)
+        for m, c in _inverse_power(frequency, k + 1).items():
+            old = collected.get(m)
+            collected[m] = shifted * c if old is None else old + shifted * c
+    return list(collected.items())
+
+
+@lru_cache(maxsize=1 << 14)
+def _inverse_power(frequency: Linear, k: int) -> Polynomial:
+    if k == 1:
+        return reciprocal(as_polynomial(frequency))
+    return multiply(_inverse_power(frequency, k - 1), _inverse_power(frequency, 1))
 
 
 # -- values ------------------------------------------------------------------

@@ -104,8 +104,32 @@ def rational(value: Any) -> Any:
 
 def fraction(value: Any) -> Exponent:
     """An ``fmpq`` or exact SymPy rational as ``int`` where it is whole, else ``Fraction``."""
-    p, q = int(value.p), int(value.q)
-    return p if q == 1 else Fraction(p, q)
+    return _interned(int(value.p), int(value.q))
+
+
+def ratio(value: Exponent) -> Exponent:
+    """The number as ``int`` where it is whole, else as the one ``Fraction`` that stands for it in keys."""
+    return value if type(value) is int else _interned(value.numerator, value.denominator)
+
+
+@lru_cache(maxsize=1 << 12)
+def _interned(p: int, q: int) -> Exponent:
+    return p if q == 1 else _Hashed(p, q)
+
+
+class _Hashed(Fraction):
+    """A fraction that keeps its hash: in keys that is asked for all the time, and takes a modular inverse."""
+
+    __slots__ = ("_hash",)
+    _hash: int
+
+    def __new__(cls, numerator: Any = 0, denominator: Any = None) -> _Hashed:
+        self = super().__new__(cls, numerator, denominator)
+        self._hash = Fraction.__hash__(self)
+        return self
+
+    def __hash__(self) -> int:  # type: ignore[override]  # typeshed knows none of Fraction
+        return self._hash
 
 
 def _normal(number: int, exponent: Exponent) -> tuple[Any, Exponent]:
@@ -125,11 +149,7 @@ def multiply_monomials(left: Monomial, right: Monomial) -> tuple[Any, Monomial]:
     for number in exponents.keys() & _related:
         gained, exponents[number] = _normal(number, exponents[number])
         factor *= gained
-    return factor, tuple(sorted((number, _whole(exponent)) for number, exponent in exponents.items() if exponent))
-
-
-def _whole(exponent: Exponent) -> Exponent:
-    return int(exponent) if exponent.denominator == 1 else exponent
+    return factor, tuple(sorted((number, ratio(exponent)) for number, exponent in exponents.items() if exponent))
 
 
 def power(base: Expr, exponent: Exponent, value: Polynomial | None = None) -> Polynomial:
@@ -192,7 +212,7 @@ def reciprocal(terms: Polynomial) -> Polynomial:
         ((monomial, value),) = terms.items()
         factor, inverse = multiply_monomials(ONE, tuple((g, -e) for g, e in monomial))
         return {inverse: factor / value}
-    if all(_is_square_root(g, e) for monomial in terms for g, e in monomial):
+    if has_square_roots_only(terms):
         return _conjugate_reciprocal(terms)
     content = fmpq(gcd(*(int(c.p) for c in terms.values())), lcm(*(int(c.q) for c in terms.values())))
     primitive = {m: c / content for m, c in terms.items()}
@@ -201,8 +221,9 @@ def reciprocal(terms: Polynomial) -> Polynomial:
     return {m: c / content for m, c in power(to_expression(primitive), -1, primitive).items()}
 
 
-def _is_square_root(number: int, exponent: Exponent) -> bool:
-    return bool(_expressions[number].is_Integer) and exponent == Fraction(1, 2)
+def has_square_roots_only(monomials: Iterable[Monomial]) -> bool:
+    """Whether all generators that occur are square roots of primes."""
+    return all(_expressions[g].is_Integer and 2 * e == 1 for monomial in monomials for g, e in monomial)
 
 
 def _conjugate_reciprocal(terms: Polynomial) -> Polynomial:
@@ -349,7 +370,7 @@ def _normal_monomial(monomial: Monomial) -> Polynomial:
         else:
             left = e
         if left:
-            rest.append((g, _whole(left)))
+            rest.append((g, ratio(left)))
     result: Polynomial = {}
     for parts, c in cosines.normal(number).items():
         factor, m = multiply_monomials(tuple(rest), _monomial_of(parts))

@@ -18,7 +18,7 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from fastpicard.coordinates import Problem
-from fastpicard.modes import COS, SIN, mask
+from fastpicard.modes import COS, SIN, mask, rational_sum
 
 Rows = dict[int, Any]  # 2 * angle + kind -> fmpq_poly
 Entry = dict[int, Rows]  # monomial -> rows
@@ -139,16 +139,11 @@ def _integrated(rows: Rows, divisors: Divisors) -> Rows:
             slopes.setdefault(slope, []).append(row.mul_low(factor, 2)[1])
     for starts, r in ((values, 0), (slopes, 1)):
         for place, numbers in starts.items():
-            row = fmpq_poly([0] * r + [-_sum(numbers)])
+            row = fmpq_poly([0] * r + [-rational_sum(numbers)])
             if place < 0:
                 place, row = reflection(place, row)
             add_rows(result, {place: row})
     return result
-
-
-def _sum(numbers: list[Any]) -> Any:
-    """The sum of rational numbers, over one denominator inside python-flint."""
-    return fmpq_poly(numbers)(1)
 
 
 def derivative(rows: Rows, divisors: Divisors) -> Rows:

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given, strategies as st
+from hypothesis import given, settings, strategies as st
 from sympy import I, Matrix, Rational, Symbol, cos, exp, pi, sin, sqrt
 
 from fastpicard import FundamentalMatrix, PoissonSeries, new_integrate
@@ -32,6 +32,28 @@ def test_powers_up_to_a_hundred_are_integrated_exactly(r, q, kind):
     expected = plain_expression(plain_integral({(r, abs(q), kind, (0, 0)): Fraction(sign)}))
 
     assert new_integrate(t**r * function(Rational(q) * t), t) == expected
+
+
+ROOTS = [sqrt(6), 1 - sqrt(2), sqrt(2) + sqrt(6), sqrt(8) - 3, 1 + sqrt(2) + sqrt(3) - sqrt(5) / 2, sqrt(15) - sqrt(3)]
+
+
+@pytest.mark.parametrize("frequency", ROOTS, ids=str)
+@given(st.integers(0, 12), st.booleans(), rationals)
+@settings(max_examples=30)
+def test_frequencies_with_roots_are_divided_by_through_their_conjugates(frequency, r, even, phase):
+    """One root to three, and products of them: the derivative gives the integrand back, and the value at 0 is 0."""
+    x = PoissonSeries(sqrt(3) * t**r * (cos if even else sin)(frequency * t + phase) + a * t**2, t)
+    found = x.integrate()
+
+    assert found.diff() == x
+    assert found(0) == 0
+
+
+@pytest.mark.parametrize("frequency", ROOTS, ids=str)
+def test_integrals_with_roots_in_the_frequency_are_those_of_quadrature(frequency):
+    """To 30 digits, from 0 to 3."""
+    x = t**4 * cos(frequency * t + 1)
+    assert closeness(PoissonSeries(x, t).integrate().evaluate(3, {}, 30), quadrature(x, t, 0, 3)) < 1e-25
 
 
 @given(expressions, rationals, rationals)
