@@ -13,7 +13,7 @@ import subprocess
 import time
 
 import numpy as np
-from sympy import CRootOf, Matrix, Poly, Rational, cos, eye, sqrt, symbols, zeros
+from sympy import CRootOf, Expr, Matrix, Poly, Rational, cos, eye, sin, sqrt, symbols, zeros
 from timing import least
 
 from fastpicard import FloquetMatrix, certify, chart, tubes
@@ -140,6 +140,10 @@ def certified() -> None:
         ("five rods, h in [0, 0.02], v in [0.1, 1000]", lambda: certify(F, (h, 0, 0.02), (v, 0.1, 1000), modes=five)),
         ("tubes of rods, a in [-0.75, 0], b in [0, 0.75]", lambda: tubes(F, (a, -0.75, 0), (b, 0, 0.75))),
         ("Mathieu, a in [-1, 5], b in [0, 6]", lambda: certify(F, (a, -1, 5), (b, 0, 6), seconds=25)),
+        ("Mathieu with damping 1/10, a in [-1, 5], b in [0, 6]",
+         lambda: certify(damped(cos(t)), (a, -1, 5), (b, 0, 6), seconds=25)),
+        ("damped, with a wave that does not reverse, a in [-1, 3], b in [-3, 3]",
+         lambda: certify(damped(cos(t) + sin(2 * t) / 3), (a, -1, 3), (b, -3, 3), seconds=25)),
         ("tubes of Mathieu, a in [-1, 5], b in [0, 6]", lambda: tubes(F, (a, -1, 5), (b, 0, 6))),
         ("two rods with joint springs, h in [0, 0.3], v in [2, 30]",
          lambda: certify(springs(2), (h, 0, 0.3), (v, 2, 30), seconds=60, undecided=1e-3)),
@@ -154,6 +158,11 @@ def certified() -> None:
         start = time.process_time()
         found = run()
         print(f"{name}: {time.process_time() - start:.1f} s of processor time; {found}", flush=True)
+
+
+def damped(wave: Expr) -> FloquetMatrix:
+    """``y'' + y'/10 + (a + b wave) y``."""
+    return FloquetMatrix(Matrix([[0, 1], [-a - b * wave, -Rational(1, 10)]]), t, 0)
 
 
 def springs(rods: int) -> FloquetMatrix:

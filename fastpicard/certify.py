@@ -1,8 +1,9 @@
 r"""Certified charts: every rectangle of the parameters STABLE, UNSTABLE or UNDECIDED, proved for the true equation.
 
 1. Where ``y'' = q(t) y`` with q > 0 at all times nothing need be computed: solutions are convex and grow.
-2. The rest of the chart fixes the order n: the a-priori remainder there must not exceed ``1e-13``.
-3. On rectangles so small that a Taylor polynomial of low degree leaves out next to nothing, the exact iterate is
+2. The rest of the chart fixes the order n of an iterate over each quarter of the period (module ``quarters``): the
+   a-priori remainder there must not exceed ``1e-13``.
+3. On rectangles so small that a Taylor polynomial of low degree leaves out next to nothing, the exact iterates are
    recentred (module ``local``), and what decides becomes Taylor models (module ``criteria``).
 4. Undecided rectangles are halved, across the direction in which the undecided function varies more, until their
    area is what was asked for, or the time is over (module ``halving``): additions only, proved signs are inherited.
@@ -25,23 +26,21 @@ from sympy import Symbol
 from fastpicard import plotting
 from fastpicard.axes import Axis
 from fastpicard.charted import Charted, images, read_chart, refuse_phases
-from fastpicard.criteria import Criterion, criterion
+from fastpicard.criteria import criterion
 from fastpicard.errors import BadInputError, BadTypeError, printed
 from fastpicard.evaluate import ball, numpy, upper_float
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halving import Chunk, Halving
 from fastpicard.latex import interval, sentence, shown
-from fastpicard.local import BITS, LocalMap, amplitudes, common_bound, convex, order_for, polynomials
-from fastpicard.precision import working
+from fastpicard.local import amplitudes, convex
+from fastpicard.quarters import Way, ways
 from fastpicard.rectangles import Rectangles, bisected, cells, corners, flattened, grid, joined, narrowed
-from fastpicard.remainder import a_priori
 from fastpicard.stability import Verdict
-from fastpicard.taylormodels import Models, stacked
+from fastpicard.taylormodels import stacked
 from fastpicard.tubes import Tubes
 from fastpicard.values import Values, exact_number
 
 Array = Any
-REMAINDER = 1e-13  # of every entry, on all rectangles that are not decided by convexity
 TAIL = 1e-10  # what a Taylor polynomial may leave out of an entry
 START = 12  # rectangles along each axis to begin with
 CODES: Mapping[str, int] = {"STABLE": 1, "UNSTABLE": -1, "UNDECIDED": 0}
@@ -56,8 +55,8 @@ class CertifiedChart:
     x, y : Axis                     ``.symbol``, ``.lo``, ``.hi``
     cells : array, shape (m, 4)     x from, x to, y from, y to; together they tile the chart
     codes : array, shape (m,)       1 stable, -1 unstable, 0 undecided
-    order : int                     of the iterate that was used
-    remainder : float               its proved distance from the truth, in every entry
+    order : int                     of the iterates that were used, one for each quarter of the way
+    remainder : float               the proved distance of each from the truth, in every entry
     criterion : str                 what was asked of the signs
     seconds : float                 what it took, building included
     lines : tuple of arrays, shape (2, m)    boundaries to draw, see :meth:`with_tubes`
@@ -207,16 +206,15 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     Raises
     ------
     BadInputError, BadTypeError, MissingParameterError
-        if the axes, modes or fixed values are not as described; if an iterate of more than order 200 is needed, so
+        if the axes, modes or fixed values are not as described; if iterates of more than order 100 are needed, so
         far from 0 that ``sup |P|`` is in the hundreds.
 
     Notes
     -----
     Stable means bounded solutions; with damping, asymptotically stable.  Mathieu's equation, a in [-1, 5], b in [0, 6]:
-    all but 1e-4 of the area in 3 to 10 s by machine, see ``benchmarks/charts.py``.  Of a damped one the iterate alone
-    may take longer, and of one that does not reverse in time, such as with ``sin 2t`` beside ``cos t``, far longer,
-    which ``seconds`` does not count; longer still with 0.1, a dyadic number of 55 bits, in place of
-    ``Rational(1, 10)``.
+    all but 1e-4 of the area in 2 to 10 s by machine, damped in twice that, see ``benchmarks/charts.py``.  Far from 0
+    the iterates alone may take longer, which ``seconds`` does not count, and longer still with 0.1, a dyadic number of
+    55 bits, in place of ``Rational(1, 10)``.
 
     Examples
     --------
@@ -238,9 +236,11 @@ def certify(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, 
     state = Halving(chart, rule, start, undecided, progress, done)
     order, error = 0, 0.0
     if len(boxes):
-        local, order, error = _local_maps(chart, rule, boxes)
+        members, order, error = ways(chart, rule, boxes)
+        degree = 8 if chart.F.shape[0] <= 4 else 6
+        state.make = lambda part: stacked([f for way in members for f in way.functions(rule, part, degree)])
         state.until = time.perf_counter() + seconds
-        state.refine(_chunks(state, boxes, local))
+        state.refine(_first_chunks(state, boxes, members, degree))
     return _result(state, order, error)
 
 
@@ -320,61 +320,24 @@ def _speed(chart: Charted, boxes: Rectangles) -> Array:
 # -- models of what decides ----------------------------------------------------
 
 
-def _local_maps(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[list[LocalMap], int, float]:
-    """One map for each member, from an iterate whose remainder on all rectangles is small."""
-    majorant = common_bound([amplitudes(chart, member, boxes) for member in chart.members])
-    with working(BITS):
-        period = chart.period / (2 if rule.half else 1)
-        order = order_for(majorant, period, REMAINDER)
-        error = max(upper_float(x.upper()) for x in a_priori(majorant, period, order).entries())
-        F = chart.F.to_order(order)
-    collapsed = F.collapse([modes for row in rule.entries(F) for modes in row])
-    found, bits = polynomials(chart, collapsed, boxes, REMAINDER)
-    return [LocalMap(member, [error] * (F.shape[0] * F.shape[1]), bits) for member in found], order, error
-
-
-def _functions(rule: Criterion, maps: list[LocalMap], boxes: Rectangles, degree: int, rows: int) -> Models:
-    """What decides, for all members: shape (size, functions, m)."""
-    found = []
-    for local in maps:
-        entries = local.models(boxes, degree)
-        parts = [Models(degree, entries.c[:, e], entries.e[e]) for e in range(rows * rows)]
-        found += rule.functions([parts[k:k + rows] for k in range(0, len(parts), rows)])
-    return stacked(found)
-
-
-def _chunks(state: Halving, boxes: Rectangles, maps: list[LocalMap]) -> list[Chunk]:
+def _first_chunks(state: Halving, boxes: Rectangles, members: list[Way], degree: int) -> list[Chunk]:
     """The first models; rectangles that are too large for their degree are halved."""
-    np = numpy()
-    rows = state.chart.F.shape[0]
-    degree = 8 if rows <= 4 else 6
     found: list[Chunk] = []
-    for round_ in range(16):
-        beyond = _beyond(maps, boxes, degree)
-        large = beyond > ((TAIL if rows == 2 else TAIL / 100) if round_ < 15 else np.inf)
-        good = np.flatnonzero(~large)
-        for start in range(0, len(good), 48):
-            if state.over():
-                state.leave(boxes.at(np.concatenate([good[start:], np.flatnonzero(large)])))
-                return found
-            part = boxes.at(good[start:start + 48])
-            models = _functions(state.rule, maps, part, degree, rows)
-            count = models.c.shape[1]
-            chunk = Chunk(part.lower, part.upper, models, np.arange(count),
-                          np.zeros((count, len(part)), dtype=np.int8))
-            state.progress_line()
-            found += state.settle(chunk)
-        if not large.any():
-            break
+    limit = TAIL if state.chart.F.shape[0] == 2 else TAIL / 100
+    for _ in range(16):
+        large = _beyond(members, boxes, degree) > limit
+        found += state.begin(boxes.at(~large))
         boxes = boxes.at(large)
-        narrow = [narrowed(boxes, k) for k in (0, 1)]
-        boxes = bisected(state.chart.axes, boxes, np.argmin([_beyond(maps, part, degree) for part in narrow], axis=0))
-    return found
+        if state.over() or not len(boxes):
+            break
+        least = [_beyond(members, narrowed(boxes, k), degree) for k in (0, 1)]
+        boxes = bisected(state.chart.axes, boxes, numpy().argmin(least, axis=0))
+    return found + state.begin(boxes)
 
 
-def _beyond(maps: list[LocalMap], boxes: Rectangles, degree: int) -> Array:
-    """What a Taylor polynomial leaves out, the largest of all entries."""
-    return numpy().max([local.beyond(boxes, degree).max(axis=0) for local in maps], axis=0)
+def _beyond(members: list[Way], boxes: Rectangles, degree: int) -> Array:
+    """What Taylor polynomials leave out, the largest of all entries."""
+    return numpy().max([way.beyond(boxes, degree) for way in members], axis=0)
 
 
 __all__ = ["CertifiedChart", "certify"]

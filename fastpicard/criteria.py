@@ -18,7 +18,8 @@ all solutions, all is stable; where a coordinate grows in proportion to time, un
 **Coinciding multipliers** of one signature do no harm: with ``W`` from the Hamiltonian structure the form
 ``W (M - 1/M)`` is invariant; definite, it proves stability.
 
-**Any other P**: Schur and Cohn without division.  The polynomial ``a`` of degree n has all roots inside the unit
+**Any other P**: of two multipliers the determinant and the characteristic polynomial at 1 and -1; of more, Schur and
+Cohn without division.  The polynomial ``a`` of degree n has all roots inside the unit
 circle exactly if ``a_n**2 - a_0**2 > 0`` and ``(a_n a(z) - a_0 z**n a(1/z))/z`` has; a step with
 ``a_n**2 - a_0**2 < 0`` has a root outside.
 """
@@ -31,7 +32,7 @@ from typing import Any
 
 from flint import fmpq
 
-from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, product, sums_of_rho
+from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, product, sums_of_rho, trace
 from fastpicard.evaluate import numpy
 from fastpicard.floquet import FloquetMatrix
 from fastpicard.halfway import Signs, half_period, known_structure, reversal
@@ -51,7 +52,7 @@ class Criterion:
     name : str
     half : bool                     whether the entries are those at half the period
     entries : exact constants, row by row
-    functions : from the entries as models, shape (rows, rows), to a list of models
+    functions : from the entries as models, shape (rows, rows), and the determinant, to a list of models
     verdicts : from signs, shape (functions, m), to 1, -1 or 0, shape (m,)
     everywhere : 1, -1 or 0         the verdict on all by the structure alone, if it has one
     """
@@ -59,7 +60,7 @@ class Criterion:
     name: str
     half: bool
     entries: Callable[[FloquetMatrix], list[list[Modes]]]
-    functions: Callable[[Rows], list[Models]]
+    functions: Callable[[Rows, Models], list[Models]]
     verdicts: Callable[[Array], Array]
     everywhere: int = 0
 
@@ -68,17 +69,19 @@ def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
     size, signs, known = F.shape[0], reversal(F.P), known_structure(F)
     if known.bounded or known.unbounded:
-        return Criterion(known.bounded or known.unbounded, False, _whole, lambda rows: [], _all_positive,
+        return Criterion(known.bounded or known.unbounded, False, _whole, lambda rows, det: [], _all_positive,
                          everywhere=1 if known.bounded else -1)
     balanced = signs is not None and 2 * signs.count(1) == size
     if known.paired and balanced and size == 2:
         return Criterion("half-period factors of trace -+ 2", True, half_period, _flat, _by_factors)
     if known.paired and size == 2:
-        return Criterion("trace", False, _whole, lambda rows: [_sum(rows) * -1 + 2.0, _sum(rows) + 2.0], _all_positive)
+        return Criterion("trace", False, _whole, _by_trace, _all_positive)
     if known.paired and balanced and known.forms and signs is not None:
         return _reversible(signs, known.forms[0])
     if known.paired:
         return _paired(size)
+    if size == 2:
+        return Criterion("trace and determinant", False, _whole, _by_determinant, _all_positive)
     return Criterion("Schur and Cohn", False, _whole, _schur_cohn, _strictly_inside)
 
 
@@ -86,13 +89,19 @@ def _whole(F: FloquetMatrix) -> list[list[Modes]]:
     return [[F.entry(i, j) for j in range(F.shape[1])] for i in range(F.shape[0])]
 
 
-def _flat(rows: Rows) -> list[Models]:
+def _flat(rows: Rows, det: Models) -> list[Models]:
     return [x for row in rows for x in row]
 
 
-def _sum(rows: Rows) -> Models:
-    total: Models = rows[0][0] + rows[1][1]
-    return total
+def _by_trace(rows: Rows, det: Models) -> list[Models]:
+    total = trace(rows)
+    return [total * -1 + 2.0, total + 2.0]
+
+
+def _by_determinant(rows: Rows, det: Models) -> list[Models]:
+    """``1 - det`` and the characteristic polynomial at 1 and -1: all positive exactly if both roots are inside."""
+    total = trace(rows)
+    return [det * -1 + 1.0, det + 1.0 - total, det + 1.0 + total]
 
 
 def _by_factors(signs: Array) -> Array:
@@ -132,7 +141,7 @@ def _reversible(signs: Signs, form: Any) -> Criterion:
     plus, minus = ([i for i in range(size) if signs[i] == s] for s in (1, -1))
     inverse = form.inv()
 
-    def functions(rows: Rows) -> list[Models]:
+    def functions(rows: Rows, det: Models) -> list[Models]:
         back = _weighted(inverse, _weighted(form.transpose(), rows, True), False)
         (A, B), (C, D) = ([_block(rows, i, j) for j in (plus, minus)] for i in (plus, minus))
         (a, b), (c, d) = ([_block(back, i, j) for j in (plus, minus)] for i in (plus, minus))
@@ -174,7 +183,7 @@ def _elementary(sums: list[Any]) -> list[Any]:
 def _paired(size: int) -> Criterion:
     n = size // 2
 
-    def functions(rows: Rows) -> list[Models]:
+    def functions(rows: Rows, det: Models) -> list[Models]:
         traces = power_sums(rows, 2 * n)
         if size % 2:
             traces = [x + -1.0 for x in traces]  # one of the multipliers is 1
@@ -241,14 +250,15 @@ def times(model: Models, q: Any) -> Models:
 # -- any matrix ----------------------------------------------------------------
 
 
-def _schur_cohn(rows: Rows) -> list[Models]:
+def _schur_cohn(rows: Rows, det: Models) -> list[Models]:
     n = len(rows)
-    sums, a = power_sums(rows, n), [rows[0][0] * 0.0 + 1.0]
-    for k in range(1, n + 1):  # Newton's identities, from the leading coefficient down
+    sums, a = power_sums(rows, n - 1), [rows[0][0] * 0.0 + 1.0]
+    for k in range(1, n):  # Newton's identities, from the leading coefficient down
         total = sums[k - 1]
         for j in range(1, k):
             total = total + a[j] * sums[k - j - 1]
         a.append(times(total, fmpq(-1, k)))
+    a.append(det * (-1) ** n)
     a.reverse()
     found = []
     while len(a) > 1:

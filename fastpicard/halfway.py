@@ -74,28 +74,38 @@ def known_structure(F: FloquetMatrix) -> Structure:
 
 def half_period(F: FloquetMatrix) -> list[list[Modes]]:
     """The n-th iterate at half the period, exactly: polynomials in the parameters, as constants."""
-    half = {m: c / 2 for m, c in F.length.items()}
-    powers: list[Polynomial] = [{ONE: fmpq(1)}]  # (T/2)**r / r!
+    return after_quarters(F, 2)
+
+
+def quarter_periods(F: FloquetMatrix, n: int, count: int) -> list[list[list[Modes]]]:
+    """The n-th iterates over the first quarters of the period, each from its beginning to its end, exactly.
+
+    Their product, the last one first, is near the true matrix where that of the whole way would take far more orders.
+    """
+    starts = [{m: c * k / 4 for m, c in F.length.items()} for k in range(count)]
+    return [after_quarters(FloquetMatrix(F.P.shifted(start), F.t, n, F.period), 1) for start in starts]
+
+
+def after_quarters(F: FloquetMatrix, quarters: int) -> list[list[Modes]]:
+    """The n-th iterate after so many quarters of the period, exactly: polynomials in the parameters, as constants."""
+    time = {m: c * quarters / 4 for m, c in F.length.items()}
+    powers: list[Polynomial] = [{ONE: fmpq(1)}]  # time**r / r!
     for r in range(1, F.n + 1):
-        powers.append(multiply(powers[-1], {m: c / r for m, c in half.items()}))
-    return [[_entry(F, i, j, powers) for j in range(F.shape[1])] for i in range(F.shape[0])]
+        powers.append(multiply(powers[-1], {m: c / r for m, c in time.items()}))
+    return [[algebra.frozen(_turned(F, i, j, quarters), powers) for j in range(F.shape[1])] for i in range(F.shape[0])]
 
 
-def _entry(F: FloquetMatrix, i: int, j: int, powers: list[Polynomial]) -> Modes:
-    return algebra.frozen(_half_turns(F, i, j), powers)
-
-
-def _half_turns(F: FloquetMatrix, i: int, j: int) -> Modes:
-    """An entry after a time in which every angle makes half turns: powers of that time."""
+def _turned(F: FloquetMatrix, i: int, j: int, quarters: int) -> Modes:
+    """An entry after a time in which every angle makes quarter turns: powers of that time."""
     found = F.increments
     if isinstance(found, PackedIncrements):
-        problem = found.problem
-        return to_modes(problem, without_frequencies(problem, found.iterate.sums[j][i], _unit_turns(F, problem)))
+        problem, turns = found.problem, _unit_turns(F, found.problem) * quarters
+        return to_modes(problem, without_frequencies(problem, found.iterate.sums[j][i], turns))
     modes: Modes = {}
     for (kind, (frequency, phase), monomial), f in found.total(i, j).items():
-        odd = _turns(F, frequency) % 2
         turned, angle = orient(((), phase))
-        algebra.add_reflected(modes, kind, turned, angle, monomial, -f if odd else f)
+        kind, negative = algebra.quarter_turned(kind, _turns(F, frequency) * quarters)
+        algebra.add_reflected(modes, kind, turned, angle, monomial, -f if negative else f)
     return modes
 
 

@@ -4,14 +4,18 @@ A chunk is an array of rectangles with Taylor models of the functions that decid
 rest is cut in two across the direction in which its undecided functions vary more, and the models are recentred on the
 halves by additions.  Signs once proved are inherited, so functions that are known on all of a chunk are dropped, and
 the degree is lowered where what is dropped stays invisible to the end.
+
+A half inherits its models' errors too.  Where these are all that is left of the undecided functions, halving is no
+help: the models are made anew for what the rectangles are by then, and where that is no help either, they stay open.
 """
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from fastpicard.charted import Charted
@@ -23,6 +27,9 @@ from fastpicard.taylormodels import Models, joined, size
 Array = Any
 CHUNK = 8192  # rectangles at a time
 FINEST = 2.0**-27  # of what is left: how far ahead is planned where all shall be decided
+AGE = 6  # halvings, after which new models leave out 2**-27 of what old ones of degree 8 did
+BATCH = 256  # rectangles whose models are made at a time, and
+FIRST = 48  # how many of them are a chunk, which keeps the degree and the functions of the one that needs most
 MOST = 1 << 27  # coefficients of undecided rectangles, a gigabyte: where nothing is decided they would fill the memory
 
 
@@ -30,7 +37,8 @@ MOST = 1 << 27  # coefficients of undecided rectangles, a gigabyte: where nothin
 class Chunk:
     """Undecided rectangles with models: halves of rectangles, given exactly by the place inside their first one.
 
-    ``rows`` are the places of the models' functions among all of them, ``signs`` the signs of all of them.
+    ``rows`` are the places of the models' functions among all of them, ``signs`` the signs of all of them; ``age`` is
+    how often the rectangles were halved since the models were made.
     """
 
     lower: Array
@@ -38,15 +46,35 @@ class Chunk:
     models: Models
     rows: Array
     signs: Array
+    age: int = 0
+
+    def at(self, places: Array) -> Chunk:
+        """Some of the rectangles."""
+        return replace(self, lower=self.lower[:, places], upper=self.upper[:, places], models=self.models.at(places),
+                       signs=self.signs[:, places])
+
+    @property
+    def open(self) -> Array:
+        """Which functions are undecided where: shape (functions, m)."""
+        found: Array = self.signs[self.rows] == 0
+        return found
+
+    @property
+    def stuck(self) -> Array:
+        """Where an undecided function varies less than its error."""
+        found: Array = ((self.models.e >= abs(self.models.c[1:]).sum(axis=0)) & self.open).any(axis=0)
+        return found
 
 
 class Halving:
     """What is decided, what is not, and how long it may take."""
 
+    make: Callable[[Rectangles], Models]  # the models of what decides on rectangles
+    until = math.inf
+
     def __init__(self, chart: Charted, rule: Criterion, start: float, target: float,
                  progress: bool | Callable[[float, float], None], done: list[tuple[Array, Array]]) -> None:
         self.chart, self.rule, self.start, self.target = chart, rule, start, target
-        self.until = float("inf")
         self.progress, self.done = progress, done
         self.whole = (chart.axes[0].hi - chart.axes[0].lo) * (chart.axes[1].hi - chart.axes[1].lo)
         self.chunks: list[Chunk] = []
@@ -77,11 +105,51 @@ class Halving:
         left = np.flatnonzero(~decided)
         if not len(left):
             return []
-        signs = chunk.signs[:, left]
-        open_ = (signs[chunk.rows] == 0).any(axis=1)
-        models = chunk.models.at(left)
-        return [Chunk(chunk.lower[:, left], chunk.upper[:, left], Models(models.degree, models.c[:, open_],
-                models.e[open_]), chunk.rows[open_], signs)]
+        rest = chunk.at(left)
+        open_, models = rest.open.any(axis=1), rest.models
+        return [replace(rest, models=Models(models.degree, models.c[:, open_], models.e[open_]),
+                        rows=rest.rows[open_])]
+
+    def begin(self, boxes: Rectangles) -> list[Chunk]:
+        """What is left of rectangles for which models are made, or all of them if the time is over."""
+        np = numpy()
+        found: list[Chunk] = []
+        for start in range(0, len(boxes), BATCH):
+            if self.over():
+                self.leave(boxes.at(slice(start, None)))
+                break
+            part = boxes.at(slice(start, start + BATCH))
+            models = self.make(part)
+            rows = np.arange(models.c.shape[1])
+            self.progress_line()
+            found += self._settled(Chunk(part.lower, part.upper, models, rows,
+                                         np.zeros((len(rows), len(part)), dtype=np.int8)))
+        return found
+
+    def _settled(self, chunk: Chunk) -> list[Chunk]:
+        """What is left of new models, in chunks that are small at first."""
+        count = chunk.lower.shape[1]
+        return [left for start in range(0, count, FIRST) for left in self.settle(chunk.at(slice(start, start + FIRST)))]
+
+    def renewed(self, chunk: Chunk) -> list[Chunk]:
+        """The chunk, with new models where halving the old ones is no help; where new ones are none, it is left."""
+        np = numpy()
+        stuck = chunk.stuck if chunk.age >= AGE else np.zeros(chunk.lower.shape[1], dtype=bool)
+        if not stuck.any():
+            return [chunk]
+        found = [] if stuck.all() else [chunk.at(~stuck)]
+        places = np.flatnonzero(stuck)
+        for start in range(0, len(places), BATCH):
+            if self.over():
+                found.append(chunk.at(places[start:]))
+                break
+            old = chunk.at(places[start:start + BATCH])
+            models = self.make(Rectangles(old.lower, old.upper))
+            helped = ((models.e[old.rows] < old.models.e / 2) & old.open).any(axis=0)
+            new = replace(old, models=models, rows=np.arange(models.c.shape[1]), age=0)
+            found += self._settled(new.at(helped))
+            self.leave(Rectangles(old.lower[:, ~helped], old.upper[:, ~helped]))
+        return found
 
     def leave(self, boxes: Rectangles) -> None:
         """Record rectangles as undecided."""
@@ -102,7 +170,7 @@ class Halving:
                     new += chunks[k:]
                     break
                 self.progress_line(rest)
-                halves = self.halved_twice(chunk, halvings)
+                halves = [half for part in self.renewed(chunk) for half in self.halved_twice(part, halvings)]
                 stored += sum(half.models.c.size for half in halves)
                 new += halves
             chunks = new
@@ -143,9 +211,8 @@ def _halved(chunk: Chunk, axes: Axes) -> Chunk:
     """Every rectangle cut in two, across the direction in which its undecided functions vary more."""
     np = numpy()
     c = abs(chunk.models.c)
-    open_ = chunk.signs[chunk.rows] == 0
     total = c[1] + c[2] + 1e-300
-    lean = np.where(open_, (c[1] - c[2]) / total, 0.0).sum(axis=0)
+    lean = np.where(chunk.open, (c[1] - c[2]) / total, 0.0).sum(axis=0)
     along_y = lean < 0
     places = [np.flatnonzero(along_y == y) for y in (False, True)]
     lower, upper, models, signs = [], [], [], []
@@ -163,7 +230,7 @@ def _halved(chunk: Chunk, axes: Axes) -> Chunk:
             models.append(part.halved(y, high))
             signs.append(chunk.signs[:, chosen])
     return Chunk(np.concatenate(lower, axis=1), np.concatenate(upper, axis=1), joined(models), chunk.rows,
-                 np.concatenate(signs, axis=1))
+                 np.concatenate(signs, axis=1), chunk.age + 1)
 
 
 def _lower_degree(models: Models, halvings: float) -> Models:
@@ -182,10 +249,4 @@ def _split(chunk: Chunk) -> list[Chunk]:
     count = chunk.lower.shape[1]
     if count <= CHUNK:
         return [chunk]
-    result = []
-    for start in range(0, count, CHUNK // 2):
-        part = slice(start, start + CHUNK // 2)
-        result.append(Chunk(chunk.lower[:, part], chunk.upper[:, part],
-                            Models(chunk.models.degree, chunk.models.c[..., part], chunk.models.e[..., part]),
-                            chunk.rows, chunk.signs[:, part]))
-    return result
+    return [chunk.at(slice(start, start + CHUNK // 2)) for start in range(0, count, CHUNK // 2)]

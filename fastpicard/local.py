@@ -120,17 +120,17 @@ def common_bound(bounds: list[Array]) -> Harmonics:
                             for i in range(size) for j in range(size) if largest[i, j]})
 
 
-def order_for(majorant: Harmonics, period: Any, tol: float) -> int:
+def order_for(majorant: Harmonics, period: Any, tol: float, highest: int = HIGHEST) -> int:
     """The smallest order from 5 up whose a-priori remainder is at most ``tol`` in every entry.
 
-    Raises BadInputError for rectangles that need one beyond HIGHEST.
+    Raises BadInputError for rectangles that need one beyond the highest.
     """
     def suffices(n: int) -> bool:
         return all(upper_float(x.upper()) <= tol for x in a_priori(majorant, period, n).entries())
 
-    if not suffices(HIGHEST):
+    if not suffices(highest):
         size = float(largest_row_sum(majorant.bound))
-        raise BadInputError(f"a chart takes an iterate of order {HIGHEST} at most, but where sup |P| is {size:.3g}, as "
+        raise BadInputError(f"a chart takes an iterate of order {highest} at most, but where sup |P| is {size:.3g}, as "
                             "in this rectangle, a higher one is needed.  Take one nearer to 0, or F.enclosure.")
     return least_order(suffices, 8)
 

@@ -281,7 +281,10 @@ def antiderivative(modes: Modes) -> Modes:
 
 
 def rational_sum(numbers: list[Any]) -> Any:
-    """The sum of rational numbers, over one denominator inside python-flint."""
+    """The sum of rational numbers, over one denominator inside python-flint; of many by halves."""
+    if len(numbers) > 64:
+        middle = len(numbers) // 2
+        return rational_sum(numbers[:middle]) + rational_sum(numbers[middle:])
     return fmpq_poly(numbers)(1)
 
 
@@ -352,6 +355,15 @@ def function_of(kind: int, r: int) -> tuple[bool, int]:
 @lru_cache(maxsize=64)
 def _functions_of(kind: int, count: int) -> list[tuple[bool, int]]:
     return [function_of(kind, r) for r in range(count)]
+
+
+def quarter_turned(kind: int, turns: int) -> tuple[int, bool]:
+    """``cos`` or ``sin`` of an angle with so many quarter turns added: which of the two, and whether its sign changes.
+
+    >>> [quarter_turned(COS, k) for k in range(4)]      # cos, -sin, -cos, sin
+    [(0, False), (1, True), (0, True), (1, False)]
+    """
+    return (kind + turns) % 2, (kind + 1 + turns) % 4 > 1 if kind == COS else turns % 4 > 1
 
 
 def frozen(modes: Modes, powers: list[Polynomial]) -> Modes:

@@ -20,7 +20,10 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from flint import arb
+
 from fastpicard.evaluate import numpy
+from fastpicard.precision import working
 
 Array = Any
 UNIT = 2.0**-53
@@ -125,6 +128,29 @@ class Models:
                 for k in range(len(line) - 2, start - 1, -1):
                     c[line[k]] += sign * c[line[k + 1]]
         return Models(d, c, (self.e + (d + 1) * UNIT * before) * SLACK + TINY)
+
+
+def exponential(f: Models) -> Models:
+    """``exp f``: of the value at the centre in balls, of the rest ``g`` by its series."""
+    np = numpy()
+    center, rest = f.c[0], f.c.copy()
+    rest[0] = 0.0
+    g = Models(f.degree, rest, f.e)
+    size = g.norm() + g.e
+    with np.errstate(all="ignore"):  # where it is beyond floats the error is infinite, and nothing is known
+        last, beyond = 0, np.exp(size) * size
+        while last < 3 * f.degree and (beyond > UNIT).any():
+            last += 1
+            beyond = beyond * size / (last + 1)
+        total = Models(f.degree, np.zeros_like(rest), np.zeros_like(f.e)) + 1.0
+        for k in range(last, 0, -1):
+            total = g * total * (1.0 / k) + 1.0
+            total.e = total.e + 2 * UNIT * total.norm()  # 1/k is rounded
+        with working(64):
+            factor = np.array([float(arb(x).exp()) for x in center.tolist()])
+        result: Models = Models(f.degree, total.c, (total.e + 2 * beyond) * SLACK) * factor
+        result.e = np.nan_to_num((result.e + 4 * UNIT * result.norm()) * SLACK + TINY, nan=np.inf)
+        return result
 
 
 def stacked(models: list[Models]) -> Models:

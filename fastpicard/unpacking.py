@@ -8,16 +8,16 @@ from typing import Any
 from flint import fmpq_poly
 
 from fastpicard.coordinates import Problem
-from fastpicard.modes import Modes, mask
+from fastpicard.modes import Modes, mask, quarter_turned
 from fastpicard.ring import ONE, Monomial, multiply_monomials
 from fastpicard.rows import Entry, Rows, add_rows, reflected, reflection
 
 
-def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
+def without_frequencies(p: Problem, entry: Entry, quarter_turns: int = 0) -> Entry:
     """The entry after whole turns of every angle: only powers of time and phases remain.
 
-    With ``half_turns``, after a time in which the unit of frequency makes that many half turns: every wave of
-    frequency ``k`` then has the sign ``(-1)**(k half_turns)``.
+    With ``quarter_turns``, after a time in which the unit of frequency makes that many quarter turns: a wave of
+    frequency ``k`` has then made ``k`` times as many, and is a wave of the phase alone.
     """
     result: Entry = {}
     start_of = p.coordinates.without_frequency if p.coordinates.phases else _nowhere
@@ -25,9 +25,11 @@ def without_frequencies(p: Problem, entry: Entry, half_turns: int = 0) -> Entry:
         collapsed: Rows = {}
         for key, row in rows.items():
             angle = key >> 1
-            place = 2 * start_of(angle) + (key & 1)
-            if half_turns and p.coordinates.frequency(angle) * half_turns % 2:
-                row = -row
+            kind = key & 1
+            if quarter_turns:
+                kind, negative = quarter_turned(kind, p.coordinates.frequency(angle) * quarter_turns)
+                row = -row if negative else row
+            place = 2 * start_of(angle) + kind
             if place < 0:
                 place, row = reflection(place, row)
             old = collapsed.get(place)

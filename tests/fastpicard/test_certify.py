@@ -1,7 +1,6 @@
 """Certified charts: no rectangle contradicts the truth at a point, whatever the criterion."""
 
 import pickle
-import sys
 from copy import deepcopy
 from fractions import Fraction
 from functools import cache
@@ -260,7 +259,7 @@ def test_memory_is_kept_to(monkeypatch):
 
 def test_the_remainder_of_the_iterate_is_in_every_verdict(monkeypatch):
     """With an iterate that may be wrong by 0.1 a wide strip stays open: |entry| < 0.1 is no sign."""
-    monkeypatch.setattr(sys.modules["fastpicard.certify"], "REMAINDER", 0.1)
+    monkeypatch.setattr("fastpicard.quarters.REMAINDER", 0.1)
     monkeypatch.setattr("fastpicard.halving.MOST", 1 << 18)
     chart = certify(MATHIEU, (a, -0.5, 1), (b, 0, 1), undecided=1e-3, seconds=600)
 
@@ -429,3 +428,13 @@ def test_phases_need_numbers():
     with pytest.raises(BadInputError, match="neither for c"):
         certify(system, (a, -5, 5), (b, 0, 5))
     assert certify(system, (a, 0.1, 0.12), (b, 0, 0.02), fixed={c: Rational(1, 3)}).undecided < 1
+
+
+@pytest.mark.parametrize("P", [Matrix([[0, 1], [-a - b * (cos(t) + sin(2 * t) / 3), -Rational(1, 10)]])], ids=["damped"])
+def test_what_is_damped_and_does_not_reverse_is_proved_over_quarters(P):
+    """Neither half a period nor a determinant of 1: the trace against Liouville's determinant."""
+    F = FloquetMatrix(P, t, 0)
+    chart = certify(F, (a, -0.5, 1), (b, 0, 1), undecided=1e-3, seconds=600)
+
+    assert chart.criterion == "trace and determinant" and chart.undecided < 1e-3
+    assert not disagreements(chart, F, 25)
