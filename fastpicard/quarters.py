@@ -42,7 +42,7 @@ class Way:
     Parameters
     ----------
     quarters : one map each, from the first one on
-    determinant : the logarithm of the determinant, as a map of one polynomial
+    determinant : the logarithm of the determinant over the period, as a map of one polynomial
     size : int      rows of the matrix
     """
 
@@ -84,15 +84,15 @@ def ways(chart: Charted, rule: Criterion, boxes: Rectangles) -> tuple[list[Way],
         found, bits = polynomials(chart, F.collapse([modes for row in rows for modes in row]), boxes, REMAINDER)
         for maps, terms in zip(quarters, found, strict=True):
             maps.append(LocalMap(terms, [error] * len(terms), bits))
-    return [Way(maps, _logarithm(chart, member, rule), F.shape[0])
+    return [Way(maps, _logarithm(chart, member), F.shape[0])
             for maps, member in zip(quarters, chart.members, strict=True)], order, error
 
 
-def _logarithm(chart: Charted, member: Member, rule: Criterion) -> LocalMap:
-    """The length of the way times the mean of the trace of ``P``."""
+def _logarithm(chart: Charted, member: Member) -> LocalMap:
+    """The period times the mean of the trace of ``P``; who asks for half the period does not ask for this."""
     total: dict[tuple[int, int], Any] = {}
     with working(BITS):
-        point, length = Point(arb(0), {}), chart.period / (2 if rule.half else 1)
+        point, length = Point(arb(0), {}), chart.period
         for (i, j), waves in chart.waves(member).items():
             for (kind, angle), terms in waves.items():
                 if i == j and not angle[0]:

@@ -430,7 +430,10 @@ def test_phases_need_numbers():
     assert certify(system, (a, 0.1, 0.12), (b, 0, 0.02), fixed={c: Rational(1, 3)}).undecided < 1
 
 
-@pytest.mark.parametrize("P", [Matrix([[0, 1], [-a - b * (cos(t) + sin(2 * t) / 3), -Rational(1, 10)]])], ids=["damped"])
+NOT_REVERSIBLE = Matrix([[0, 1], [-a - b * (cos(t) + sin(2 * t) / 3), -Rational(1, 10)]])
+
+
+@pytest.mark.parametrize("P", [NOT_REVERSIBLE], ids=["damped"])
 def test_what_is_damped_and_does_not_reverse_is_proved_over_quarters(P):
     """Neither half a period nor a determinant of 1: the trace against Liouville's determinant."""
     F = FloquetMatrix(P, t, 0)
