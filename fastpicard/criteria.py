@@ -35,8 +35,7 @@ from flint import fmpq
 from fastpicard.determinants import determinant, hermite, hermite_from_zero, power_sums, product, sums_of_rho, trace
 from fastpicard.evaluate import numpy
 from fastpicard.floquet import FloquetMatrix
-from fastpicard.halfway import Signs, half_period, known_structure, reversal
-from fastpicard.modes import Modes
+from fastpicard.halfway import Signs, known_structure, reversal
 from fastpicard.taylormodels import UNIT, Models
 
 Array = Any
@@ -50,8 +49,7 @@ class Criterion:
     Attributes
     ----------
     name : str
-    half : bool                     whether the entries are those at half the period
-    entries : exact constants, row by row
+    half : bool                     whether the entries are those at half the period, or at the whole one
     functions : from the entries as models, shape (rows, rows), and the determinant, to a list of models
     verdicts : from signs, shape (functions, m), to 1, -1 or 0, shape (m,)
     everywhere : 1, -1 or 0         the verdict on all by the structure alone, if it has one
@@ -59,7 +57,6 @@ class Criterion:
 
     name: str
     half: bool
-    entries: Callable[[FloquetMatrix], list[list[Modes]]]
     functions: Callable[[Rows, Models], list[Models]]
     verdicts: Callable[[Array], Array]
     everywhere: int = 0
@@ -69,24 +66,20 @@ def criterion(F: FloquetMatrix) -> Criterion:
     """The sharpest criterion for the structure of the equation."""
     size, signs, known = F.shape[0], reversal(F.P), known_structure(F)
     if known.bounded or known.unbounded:
-        return Criterion(known.bounded or known.unbounded, False, _whole, lambda rows, det: [], _all_positive,
+        return Criterion(known.bounded or known.unbounded, False, lambda rows, det: [], _all_positive,
                          everywhere=1 if known.bounded else -1)
     balanced = signs is not None and 2 * signs.count(1) == size
     if known.paired and balanced and size == 2:
-        return Criterion("half-period factors of trace -+ 2", True, half_period, _flat, _by_factors)
+        return Criterion("half-period factors of trace -+ 2", True, _flat, _by_factors)
     if known.paired and size == 2:
-        return Criterion("trace", False, _whole, _by_trace, _all_positive)
+        return Criterion("trace", False, _by_trace, _all_positive)
     if known.paired and balanced and known.forms and signs is not None:
         return _reversible(signs, known.forms[0])
     if known.paired:
         return _paired(size)
     if size == 2:
-        return Criterion("trace and determinant", False, _whole, _by_determinant, _all_positive)
-    return Criterion("Schur and Cohn", False, _whole, _schur_cohn, _strictly_inside)
-
-
-def _whole(F: FloquetMatrix) -> list[list[Modes]]:
-    return [[F.entry(i, j) for j in range(F.shape[1])] for i in range(F.shape[0])]
+        return Criterion("trace and determinant", False, _by_determinant, _all_positive)
+    return Criterion("Schur and Cohn", False, _schur_cohn, _strictly_inside)
 
 
 def _flat(rows: Rows, det: Models) -> list[Models]:
@@ -166,7 +159,7 @@ def _reversible(signs: Signs, form: Any) -> Criterion:
         good |= (one != 0) & (one == other)
         return np.where(bad, -1, np.where(good, 1, 0))
 
-    return Criterion("half-period factors, Hermite's minors, invariant form", True, half_period, functions, verdicts)
+    return Criterion("half-period factors, Hermite's minors, invariant form", True, functions, verdicts)
 
 
 def _elementary(sums: list[Any]) -> list[Any]:
@@ -191,7 +184,7 @@ def _paired(size: int) -> Criterion:
         first, second = (_models(hermite(sums, n, beyond), sums[0]) for beyond in (False, True))
         return [_minor(first, k) for k in range(2, n + 1)] + [_minor(second, k) for k in range(1, n + 1)]
 
-    return Criterion("Hermite's minors", False, _whole, functions, _all_positive)
+    return Criterion("Hermite's minors", False, functions, _all_positive)
 
 
 def _definite(minors: Array) -> Array:

@@ -187,15 +187,12 @@ class PicardIterate(AsMatrix):
 
         Parameters
         ----------
-        t_value : number, ball, or interval (lo, hi)    before ``t0`` too
-        values : {Symbol: number, ball, or interval (lo, hi)} for every parameter
-            for balls and intervals the bound holds on the whole box.
-        entrywise : bool
-            True for an array of bounds, one for each entry.
+        t_value : number, ball, or interval (lo, hi)    before ``t0`` too; unit of time
+        values, entrywise : as :meth:`fastpicard.FloquetMatrix.remainder`, those of ``t0`` and ``x0`` too
 
         Returns
         -------
-        float, rounded up: a bound of the largest row sum, hence of every entry; ``inf`` beyond the range of floats.
+        float, rounded up, the largest row sum; or an array of the iterate's shape.
 
         Raises
         ------

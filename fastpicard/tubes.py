@@ -30,6 +30,7 @@ from fastpicard.criteria import criterion
 from fastpicard.errors import BadInputError, printed
 from fastpicard.evaluate import ball, numpy, to_number, upper_float
 from fastpicard.floquet import FloquetMatrix
+from fastpicard.halfway import half_period
 from fastpicard.harmonics import Harmonics
 from fastpicard.latex import interval, meaning, number, shown
 from fastpicard.local import LocalMap, amplitudes, common_bound, order_for, polynomials, shift
@@ -228,7 +229,7 @@ class _Work:
             self.order = order_for(wider, half, radius * 1e-4)
             self.error = max(upper_float(z.upper()) for z in a_priori(wider, half, self.order).entries())
         G = chart.F.to_order(self.order)
-        collapsed = G.collapse([modes for row in criterion(chart.F).entries(G) for modes in row])
+        collapsed = G.collapse([modes for row in half_period(G) for modes in row])
         (functions,), self.bits = polynomials(chart, collapsed, whole, radius * 1e-8)
         with working(self.bits):
             self.local = LocalMap(functions + [_by_first(terms) for terms in functions], [self.error] * 8, self.bits)
