@@ -61,7 +61,8 @@ def chart(F: FloquetMatrix, x: tuple[Symbol, Any, Any], y: tuple[Symbol, Any, An
     modes : sequence of {Symbol: expression}, as for :func:`certify`
     chunks : None, or the points (across, up) of a part
         the arrays are then dask's: parts are computed when they are asked for, on all cores, and charts may be larger
-        than memory; ``chart(...).to_zarr(...)`` and dask's schedulers take them
+        than memory; ``chart(...).to_zarr(...)`` and dask's schedulers take them.  Where eigenvalues decide, LAPACK's
+        last bits depend on the parts
 
     Returns
     -------

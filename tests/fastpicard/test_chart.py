@@ -122,11 +122,21 @@ def test_the_axes_of_a_chart_have_names_of_their_own():
 
 @pytest.mark.parametrize("F, fixed", [(MATHIEU, None), (DAMPED, {c: Rational(1, 5)})])
 def test_a_chart_in_parts_is_the_chart(F, fixed):
-    """To the last bit, computed when it is asked for."""
+    """Computed when it is asked for; the trace to the last bit, and all where no eigenvalues are taken.
+
+    LAPACK's last bits depend on where a matrix lies in memory: in the error they count as often as the condition of
+    the eigenvectors, here up to 1e8 times.
+    """
     axes = {"x": (a, -1, 2), "y": (b, 0, 2), "points": (31, 23), "fixed": fixed}
     whole, parts = chart(F, **axes), chart(F, **axes, chunks=(10, 7))
     assert parts.trace.chunks == ((7, 7, 7, 2), (10, 10, 10, 1))
-    assert parts.compute().identical(whole)
+    found = parts.compute()
+    if fixed is None:
+        assert found.identical(whole)
+    assert found[["trace", "verdict"]].identical(whole[["trace", "verdict"]])
+    assert found.attrs == whole.attrs
+    np.testing.assert_allclose(found.margin, whole.margin, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(found.error, whole.error, rtol=1e-6)
 
 
 def test_a_chart_can_be_pickled():
