@@ -134,7 +134,7 @@ def harmonics(P: SeriesMatrix, values: Mapping[Any, Any]) -> Harmonics:
                 q, c, s = found.get(angle[0], (point.linear(angle[0]), arb(0), arb(0)))
                 found[angle[0]] = q, c + cos, s - sin
             if found:
-                waves[i, j] = list(found.values())
+                waves[i, j] = [(q, c, arb(0) if q == 0 else s) for q, c, s in found.values()]
     return Harmonics(P.shape[0], waves)
 
 

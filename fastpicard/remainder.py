@@ -12,8 +12,8 @@ The true matrix is the sum of all increments, ``Phi = I_0 + I_1 + ...``, so
 *A posteriori*, the next ``m`` increments are computed at the parameters in question,
 and the a-priori sum bounds only what follows them: cancellation inside an increment,
 which the first bound cannot see, is then seen.  ``m`` grows until the rest is below a
-hundredth of the sum, so the bound is the true error to a few percent; ``m`` is not searched for where increments
-grow up to an order beyond n and ``MOST_INCREMENTS``.
+hundredth of the sum, or where increments vanish below the last digit computed with, so the bound is the true error to a
+few percent; ``m`` is not searched for where increments grow up to an order beyond n and ``MOST_INCREMENTS``.
 
 Each increment is kept on pieces of the period as a polynomial in balls (a Taylor model
 in time): for ``u`` in [0, 1] a term ``c u**j`` of degree ``j > d`` lies in ``[-|c|, |c|] u**d``,
@@ -78,10 +78,11 @@ def a_posteriori(P: Harmonics, period: Any, n: int, start: Any = None) -> Any:
     wide = P.is_wide or any(x.rel_accuracy_bits() < 32 for x in (period, *start.entries()))
     for level in range(0, LEVELS, 2):
         rest, total, k = first, 0 * start, n
+        least = largest_row_sum(first) * arb(2) ** -_bits(level)  # where increments vanish, as if P P = 0
         source = increments_at_end(P, period, n, level, start)
         for _ in range(n + 1):
             next(source)
-        while 100 * largest_row_sum(rest) > largest_row_sum(_upper(total)) and not _is_zero(rest):
+        while 100 * largest_row_sum(rest) > max(largest_row_sum(_upper(total)), least):
             k += 1
             with working(_bits(level)):
                 total = total + next(source)

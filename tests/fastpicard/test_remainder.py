@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from flint import arb
 from hypothesis import given, settings, strategies as st
-from sympy import Matrix, Rational, Symbol, cos, pi, sin, sqrt
+from sympy import Matrix, Rational, Symbol, cos, integrate, pi, sin, sqrt
 
-from fastpicard import BadInputError, BadTypeError, FloquetMatrix, MissingParameterError
+from fastpicard import BadInputError, BadTypeError, FloquetMatrix, FundamentalMatrix, MissingParameterError
 from tests.fastpicard.test_reference_cases import numbers, system, truncation_errors
 from tests.oracles import true_fundamental_matrix, truncation_bound
 
@@ -151,6 +151,21 @@ def test_increments_that_cancel_each_other_are_bounded_sharply():
         error = abs(mpmath.exp(turns) - sum(turns**k / mpmath.factorial(k) for k in range(21)))
 
     assert error <= FloquetMatrix(Matrix([[-20]]), t, 20).remainder() <= 1.02 * error
+
+
+NULL = Matrix([[1, -1], [1, -1]])
+
+
+@pytest.mark.parametrize(("P", "slope"), [(NULL, 1), (cos(t) * NULL, cos(t)), (NULL + sin(a * t) * NULL, 1)])
+def test_where_increments_vanish_the_bound_comes_to_an_end(P, slope):
+    """``P(t) P(s) = 0``, which ``sup |P|`` cannot know: the first iterate is the truth, its bound next to nothing."""
+    for time in (1, Rational(1, 3), -2):
+        X = FundamentalMatrix(P, t, 1)
+        assert X.remainder(time, {a: 0}) < 1e-50
+        below = FundamentalMatrix(P, t, 0).remainder(time, {a: 0})
+        error = 2 * abs(integrate(slope, (t, 0, time)))
+        assert error <= below * (1 + 1e-15) and below <= 1.02 * error
+    assert FloquetMatrix(NULL, t, 1, period=2).remainder() < 1e-50
 
 
 @pytest.mark.parametrize(
